@@ -1,0 +1,102 @@
+#include "components/components.hpp"
+
+#include <array>
+
+namespace petrichor {
+namespace {
+
+using std::string_view;
+constexpr std::array<string_view, 2> drop_sizes{"marshall_palmer", "gamma"};
+constexpr std::array<string_view, 3> light_kinds{"point", "spot", "directional"};
+constexpr Range any{};
+constexpr Range positive{0.0, 1e9};
+
+std::vector<Schema> make_schemas() {
+  return {
+      schema<Name>("name", "What people call the entity.", {field<&Name::text>("text", "", any, "The name.")}),
+      schema<Transform>("transform", "Placement relative to the parent, or to the world without one.",
+                        {field<&Transform::position_m>("position_m", "m", {-1e7, 1e7}, "Position; y is up."),
+                         field<&Transform::orientation>("orientation", "", {-1, 1}, "Unit quaternion x, y, z, w."),
+                         field<&Transform::scale>("scale", "", {-1e6, 1e6}, "Scale along the own axes.")}),
+      schema<Camera>(
+          "camera", "A camera looking along its -z.",
+          {field<&Camera::vertical_fov_deg>("vertical_fov_deg", "deg", {1, 170}, "Vertical field of view."),
+           field<&Camera::near_m>("near_m", "m", {0.001, 100}, "Nearest distance drawn."),
+           field<&Camera::exposure_s>("exposure_s", "s", {1e-5, 1}, "Shutter time that streaks are integrated over."),
+           field<&Camera::exposure_ev100>("exposure_ev100", "EV", {-10, 20}, "Exposure value: +1 halves the brightness."),
+           field<&Camera::bloom>("bloom", "", {0, 1}, "Share of the light that the lens scatters."),
+           field<&Camera::active>("active", "", any, "The first active camera makes the picture.")}),
+      schema<Light>(
+          "light", "A punctual light (KHR_lights_punctual), shining along its -z.",
+          {field<&Light::kind>("kind", "", any, "Shape of the light.", light_kinds),
+           colour<&Light::colour>("colour", "", {0, 1000}, "Linear RGB, multiplies the intensity."),
+           field<&Light::intensity_cd>("intensity_cd", "cd", {0, 1e9}, "Luminous intensity (lux where directional)."),
+           field<&Light::range_m>("range_m", "m", {0, 1e6}, "Distance at which it ends; 0 for no end."),
+           field<&Light::inner_cone_deg>("inner_cone_deg", "deg", {0, 90}, "Half angle of full intensity."),
+           field<&Light::outer_cone_deg>("outer_cone_deg", "deg", {0, 90}, "Half angle of no intensity."),
+           field<&Light::source_radius_m>("source_radius_m", "m", {0, 10}, "Size of the source; softens its shadows."),
+           field<&Light::casts_shadow>("casts_shadow", "", any, "Whether it casts shadows."),
+           field<&Light::lights_rain>("lights_rain", "", any, "Whether falling drops catch its light.")}),
+      schema<Emitter>(
+          "emitter", "Falling rain.",
+          {field<&Emitter::rain_mm_per_hour>("rain_mm_per_hour", "mm/h", {0, 300}, "Water reaching the ground."),
+           field<&Emitter::drop_sizes>("drop_sizes", "", any, "Distribution of drop diameters.", drop_sizes),
+           field<&Emitter::gamma_shape>("gamma_shape", "", {-1, 6}, "Shape of the gamma distribution."),
+           field<&Emitter::minimum_diameter_mm>("minimum_diameter_mm", "mm", {0.1, 6}, "Smallest drop drawn singly."),
+           field<&Emitter::maximum_diameter_mm>("maximum_diameter_mm", "mm", {0.2, 8}, "Largest drop."),
+           field<&Emitter::drawn_distance_m>("drawn_distance_m", "m", {0, 500}, "Farther drops become extinction and airlight."),
+           field<&Emitter::maximum_drops>("maximum_drops", "", {0, 400000000}, "Budget of drops; the drawn distance shrinks to fit."),
+           field<&Emitter::seed>("seed", "", {0, 4294967295.0}, "Which rain of all possible rains.")}),
+      schema<Wind>("wind", "Mean wind and gusts.",
+                   {field<&Wind::velocity_mps>("velocity_mps", "m/s", {-80, 80}, "Mean wind."),
+                    field<&Wind::gust_mps>("gust_mps", "m/s", {0, 40}, "Gust amplitude along the wind."),
+                    field<&Wind::gust_period_s>("gust_period_s", "s", {0.1, 600}, "Period of the slowest gust."),
+                    field<&Wind::swirl_mps>("swirl_mps", "m/s", {0, 40}, "Gust amplitude across the wind.")}),
+      schema<Fog>("fog", "Mist, besides the rain's own extinction.",
+                  {field<&Fog::extinction_per_km>("extinction_per_km", "1/km", {0, 1000}, "Extinction coefficient."),
+                   colour<&Fog::albedo>("albedo", "", {0, 1}, "Share of the extinguished light that is scattered.")}),
+      schema<Sky>("sky", "The night sky.",
+                  {colour<&Sky::zenith_cd_m2>("zenith_cd_m2", "cd/m2", positive, "Luminance overhead."),
+                   colour<&Sky::horizon_cd_m2>("horizon_cd_m2", "cd/m2", positive, "Luminance of the city's glow at the horizon."),
+                   field<&Sky::glow_height>("glow_height", "", {0.01, 1}, "Sine of the elevation where the glow falls to 1/e."),
+                   field<&Sky::ambient>("ambient", "", {0, 100}, "Multiplies the sky's light on surfaces.")}),
+      schema<DripSource>("drip_source", "An edge that water drips from, along its +x.",
+                         {field<&DripSource::length_m>("length_m", "m", {0.01, 1000}, "Length of the edge."),
+                          field<&DripSource::catchment_depth_m>("catchment_depth_m", "m", {0, 100}, "Depth of the surface behind it."),
+                          field<&DripSource::lip_radius_mm>("lip_radius_mm", "mm", {0.1, 10}, "Radius of the lip drops hang from.")}),
+      schema<Puddle>("puddle", "A hollow where water stands: a rectangle in x and z.",
+                     {field<&Puddle::size_m>("size_m", "m", {0.01, 1000}, "Extent."),
+                      field<&Puddle::maximum_depth_mm>("maximum_depth_mm", "mm", {0, 1000}, "Depth at which it overflows."),
+                      field<&Puddle::catchment_ratio>("catchment_ratio", "", {0, 1000}, "Catchment area over puddle area.")}),
+      schema<GlassPane>("glass_pane", "Glass that droplets sit on: a rectangle in x and y.",
+                        {field<&GlassPane::size_m>("size_m", "m", {0.01, 1000}, "Extent."),
+                         field<&GlassPane::advancing_angle_deg>("advancing_angle_deg", "deg", {1, 179}, "Advancing contact angle."),
+                         field<&GlassPane::receding_angle_deg>("receding_angle_deg", "deg", {1, 179}, "Receding contact angle.")}),
+      schema<LightningDirector>("lightning_director", "Directs strokes of lightning.",
+                                {field<&LightningDirector::flashes_per_minute>("flashes_per_minute", "1/min", {0, 60}, "Mean rate."),
+                                 field<&LightningDirector::distance_m>("distance_m", "m", {0, 50000}, "Mean distance."),
+                                 field<&LightningDirector::seed>("seed", "", {0, 4294967295.0}, "Which storm.")}),
+      schema<MeshInstance>("mesh_instance", "One mesh of a loaded model.",
+                           {field<&MeshInstance::model>("model", "", {0, 1e6}, "Index of the model."),
+                            field<&MeshInstance::mesh>("mesh", "", {0, 1e6}, "Index of the mesh in the model."),
+                            field<&MeshInstance::casts_shadow>("casts_shadow", "", any, "Whether it shades other things.")}),
+      schema<Walker>("walker", "The person in the sandbox.",
+                     {field<&Walker::eye_height_m>("eye_height_m", "m", {0.2, 10}, "Eyes above the ground."),
+                      field<&Walker::radius_m>("radius_m", "m", {0.05, 5}, "Half the person's width."),
+                      field<&Walker::walk_mps>("walk_mps", "m/s", {0, 100}, "Walking speed."),
+                      field<&Walker::run_mps>("run_mps", "m/s", {0, 100}, "Running speed."),
+                      field<&Walker::fly_mps>("fly_mps", "m/s", {0, 1000}, "Flying speed."),
+                      field<&Walker::flying>("flying", "", any, "Fly instead of walking."),
+                      field<&Walker::yaw_deg>("yaw_deg", "deg", any, "Heading."),
+                      field<&Walker::pitch_deg>("pitch_deg", "deg", {-89, 89}, "Tilt of the head.")}),
+  };
+}
+
+}  // namespace
+
+std::span<const Schema> component_schemas() {
+  static const std::vector<Schema> schemas = make_schemas();
+  return schemas;
+}
+
+}  // namespace petrichor
