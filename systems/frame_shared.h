@@ -19,6 +19,9 @@ using uint = std::uint32_t;
 #define FRAME_UNIFORMS_BINDING 0  // uniform block FrameBlock { FrameUniforms frame; }
 #define LIGHTS_BINDING 0          // buffer, LightGpu lights[]
 #define INSTANCES_BINDING 1       // buffer, InstanceGpu instances[]
+#define MATERIALS_BINDING 2       // buffer, MaterialGpu materials[] (systems/geometry)
+#define OCCLUSION_UNIFORMS_BINDING 1  // uniform block, OcclusionUniforms (systems/occlusion)
+#define OCCLUSION_UNIT 15         // texture unit of the occlusion map in shaders that include occlusion.glsl
 
 #define LIGHT_POINT 0
 #define LIGHT_SPOT 1
@@ -59,10 +62,18 @@ struct InstanceGpu {
   vec4 normal0, normal1, normal2;  // columns of the normal matrix
 };
 
+// The map of shelter: scene depth along the fall direction of the precipitation.
+struct OcclusionUniforms {
+  mat4 map_from_relative;  // camera-relative world -> xy texture coordinates in 0..1, z metres along the fall
+  vec4 fall_texel;         // xyz unit fall direction in the world, w: texel edge, m; 0: there is no map
+  vec4 size_depth;         // x texels per side, y metres from depth 1 (upper end) to depth 0, z bias, m, w 0
+};
+
 #ifdef __cplusplus
 static_assert(sizeof(FrameUniforms) == 4 * 64 + 10 * 16);
 static_assert(sizeof(LightGpu) == 64);
 static_assert(sizeof(InstanceGpu) == 112);
+static_assert(sizeof(OcclusionUniforms) == 96);
 }  // namespace petrichor
 #endif
 #endif
