@@ -49,6 +49,9 @@ struct PassContext {
   // The texture in a slot. Asserts on names that the offer did not declare.
   const Texture& texture(std::string_view slot) const;
   bool has(std::string_view slot) const;  // false: unconnected, or nobody wrote it this frame
+  // Of a persistent resource: true from when its texture was made (load, reload, reset, new size) until the
+  // first pass that writes it has run. Its content is then undefined and must be drawn. Others: always true.
+  bool fresh(std::string_view slot) const;
   const Program& program(std::string_view name) const;
   float parameter(std::string_view name) const;
 
@@ -68,7 +71,10 @@ struct PassReport {
 };
 
 // Resources a script may declare without describing them.
-//   table.resources.NAME = { format = "rgba16f", scale = 1.0 | width/height, history = true, mips = n }
+//   table.resources.NAME = { format = "rgba16f", scale = 1.0 | width/height, history = true, mips = n,
+//                            persistent = true }
+// persistent: the texture is its own (never aliased) and keeps its content between frames, so that a pass may
+// decide to leave it as it is (cached shadow and occlusion maps). It can stand beside a fixed width/height.
 // A read of "previous:NAME" is last frame's content of a history resource (cleared on the first frame).
 // Script passes: { pass = "name", SLOT = "resource", ..., parameters = {...} }, or an artist's own compute
 // shader: { compute = "file.comp.glsl", name = "...", read = { SAMPLER = "resource" },
