@@ -4,6 +4,7 @@
 
 #include <epoxy/gl.h>
 
+#include <array>
 #include <cstddef>
 #include <span>
 #include <utility>
@@ -27,6 +28,7 @@ class GlId {
     if (id_) Delete(id_);
   }
   operator GLuint() const { return id_; }
+  GLuint release() { return std::exchange(id_, 0); }
 
  private:
   GLuint id_ = 0;
@@ -69,10 +71,13 @@ void upload(Buffer& buffer, std::span<const T> values) {
 void clear_buffer(const Buffer&);  // to zero
 void read_buffer(const Buffer&, void* data, std::size_t bytes, std::size_t offset = 0);
 
+// Immutable storage, clamped to the edge, filtered linearly (integer and depth formats: nearest). Content undefined.
 Texture make_texture_2d(int width, int height, GLenum internal_format, int levels = 1);
 Texture make_texture_2d_array(int width, int height, int layers, GLenum internal_format, int levels = 1);
 Texture make_texture_cube(int size, GLenum internal_format, int levels = 1);
 int full_mip_levels(int width, int height);
+// All levels and layers. Depth formats take value[0]; integer formats the whole numbers.
+void clear_texture(const Texture&, const std::array<float, 4>& value = {});
 
 // Depth and colour attachments of one draw; textures must outlive it. Pass id 0 for no depth.
 Framebuffer make_framebuffer(std::span<const GLuint> colour_textures, GLuint depth_texture);
