@@ -61,13 +61,15 @@ class FilmRecorder final : public Recorder {
     posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
     posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, log_.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0644);
     const bool webm = file_.extension() == ".webm";
-    const std::vector<std::string> words = {
+    std::vector<std::string> words = {
         "ffmpeg", "-nostdin", "-hide_banner", "-loglevel", "error", "-y", "-f", "rawvideo", "-pixel_format", "rgba", "-video_size",
         fmt::format("{}x{}", width_, height_), "-framerate", fmt::format("{}", fps), "-i", "pipe:0",
         // Rows come from the bottom; 4:2:0 needs even sides.
         "-vf", "vflip,pad=ceil(iw/2)*2:ceil(ih/2)*2:color=black,scale=out_color_matrix=bt709:out_range=tv", "-pix_fmt", "yuv420p",
-        "-color_primaries", "bt709", "-color_trc", "bt709", "-colorspace", "bt709", "-c:v", webm ? "libvpx-vp9" : "libx264", "-crf", webm ? "24" : "16",
-        "-b:v", webm ? "0" : "0", "-movflags", "+faststart", beside_.string()};
+        "-color_primaries", "bt709", "-color_trc", "bt709", "-colorspace", "bt709",};
+    if (webm) words.insert(words.end(), {"-c:v", "libvpx-vp9", "-crf", "24", "-b:v", "0"});
+    else words.insert(words.end(), {"-c:v", "libx264", "-crf", "16", "-movflags", "+faststart"});
+    words.push_back(beside_.string());
     std::vector<char*> arguments;
     for (const std::string& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
     arguments.push_back(nullptr);

@@ -1,5 +1,6 @@
 #include "engine/app/recorder.hpp"
 
+#include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 #include <fmt/format.h>
 
@@ -8,6 +9,7 @@
 #include <vector>
 
 #include "engine/app/film.hpp"
+#include "engine/core/paths.hpp"
 
 namespace petrichor {
 namespace {
@@ -28,32 +30,25 @@ class PictureRecorder final : public Recorder {
   Result<void> add(std::int64_t number, const Picture& picture) override {
     const fs::path file = target_.numbered ? numbered_file(target_.file, number) : target_.file;
     if (auto made = make_folder_of(file); !made) return made;
-    // The format is chosen by extension, so the one beside keeps it.
-    fs::path beside = file;
-    beside.replace_filename("." + file.stem().string() + ".part" + file.extension().string());
-    auto written = write(beside, picture);
-    std::error_code error;
-    if (written) {
-      fs::rename(beside, file, error);
-      if (!error) return {};
-      written = failure(error.message());
-    }
-    fs::remove(beside, error);
-    return failure(fmt::format("{}: cannot be written: {}", file.string(), written.error().message));
+    std::vector<unsigned char> bytes;
+    if (auto encoded = encode(picture, bytes); !encoded)
+      return failure(fmt::format("{}: cannot be encoded: {}", file.string(), encoded.error().message));
+    return write_whole_file(file, std::as_bytes(std::span(bytes)));
   }
 
   Result<void> finish() override { return {}; }
 
  private:
-  Result<void> write(const fs::path& file, const Picture& picture) {
-    auto output = OIIO::ImageOutput::create(file.string());
-    if (!output) return failure(OIIO::geterror());
+  Result<void> encode(const Picture& picture, std::vector<unsigned char>& bytes) {
     const bool exr = target_.kind == RecordKind::exr;
+    const char* format = exr ? "picture.exr" : "picture.png";
+    OIIO::Filesystem::IOVecOutput memory(bytes);
+    auto output = OIIO::ImageOutput::create(format, &memory);
+    if (!output) return failure(OIIO::geterror());
     OIIO::ImageSpec spec(picture.width, picture.height, 3, exr ? OIIO::TypeDesc::HALF : OIIO::TypeDesc::UINT8);
     spec.attribute("oiio:ColorSpace", exr ? "Linear" : "sRGB");
-    spec.attribute("compression", exr ? "zip" : "");
-    spec.attribute("png:compressionLevel", 6);
-    if (!output->open(file.string(), spec)) return failure(output->geterror());
+    if (exr) spec.attribute("compression", "zip");
+    if (!output->open(format, spec)) return failure(output->geterror());
     const auto write_rows = [&](const auto* data, OIIO::TypeDesc type) {
       // OpenGL's rows start at the bottom: begin with the last one and walk back.
       const auto texel = static_cast<OIIO::stride_t>(4 * sizeof(*data));
@@ -62,7 +57,6 @@ class PictureRecorder final : public Recorder {
     };
     const bool good = exr ? write_rows(picture.rgba32f.data(), OIIO::TypeDesc::FLOAT)
                           : write_rows(picture.rgba8.data(), OIIO::TypeDesc::UINT8);
-    // close() reports what a full disk kept from being flushed.
     if (!output->close() || !good) return failure(output->geterror());
     return {};
   }

@@ -1,0 +1,54 @@
+#include "engine/app/options.hpp"
+
+#include <gtest/gtest.h>
+
+namespace petrichor {
+namespace {
+
+ParsedCommandLine parse(std::vector<std::string> words) {
+  words.insert(words.begin(), "petrichor");
+  std::vector<char*> arguments;
+  for (auto& word : words) arguments.push_back(word.data());
+  return parse_command_line(static_cast<int>(arguments.size()), arguments.data());
+}
+
+TEST(Options, RenderTakesEverything) {
+  const auto parsed = parse({"render", "a.lua", "--size", "640x360", "--fps", "30", "--frames", "10:20", "--out", "f%04d.png", "--set",
+                             "emitter.rain_mm_per_hour=50", "--set", "wind.gust_mps=2", "--seed", "9", "--stats", "s.json"});
+  ASSERT_TRUE(parsed.options);
+  const auto& render = std::get<RenderOptions>(*parsed.options);
+  EXPECT_EQ(render.width, 640);
+  EXPECT_EQ(render.height, 360);
+  EXPECT_EQ(render.fps, 30.0);
+  ASSERT_TRUE(render.frames);
+  EXPECT_EQ(render.frames->begin, 10);
+  EXPECT_EQ(render.frames->end, 20);
+  EXPECT_EQ(render.subject.sets.size(), 2u);
+  EXPECT_EQ(render.subject.seed, 9u);
+}
+
+TEST(Options, WrongCallsExitWithTwo) {
+  for (const std::vector<std::string>& words : std::vector<std::vector<std::string>>{
+           {}, {"rain"}, {"render"}, {"render", "a.lua", "--size", "640"}, {"render", "a.lua", "--size", "0x4"},
+           {"render", "a.lua", "--size", "99999x4"}, {"render", "a.lua", "--frames", "5:5"}, {"render", "a.lua", "--frames", "-1:5"},
+           {"render", "a.lua", "--set", "novalue"}, {"render", "a.lua", "--fps", "0"}, {"render", "a.lua", "--nonsense"},
+           {"measure"}, {"measure", "rain", "--rate", "-1"}, {"bench", "--drops", "0"}}) {
+    testing::internal::CaptureStderr();
+    const auto parsed = parse(words);
+    const std::string said = testing::internal::GetCapturedStderr();
+    EXPECT_FALSE(parsed.options);
+    EXPECT_EQ(parsed.exit_code, exit_wrong_call);
+    EXPECT_FALSE(said.empty());
+  }
+}
+
+TEST(Options, HelpExitsWithZero) {
+  testing::internal::CaptureStdout();
+  const auto parsed = parse({"render", "--help"});
+  EXPECT_NE(testing::internal::GetCapturedStdout().find("--frames"), std::string::npos);
+  EXPECT_EQ(parsed.exit_code, exit_done);
+  EXPECT_FALSE(parsed.options);
+}
+
+}  // namespace
+}  // namespace petrichor
