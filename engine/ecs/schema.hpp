@@ -45,6 +45,7 @@ struct Schema {
   void* (*find)(Registry&, Entity);     // nullptr where absent
   void (*remove)(Registry&, Entity);
   std::vector<Entity> (*entities)(Registry&);
+  std::size_t (*count)(const Registry&);  // of entities that have it, without a walk
 };
 
 namespace detail {
@@ -113,7 +114,8 @@ Schema schema(std::string_view name, std::string_view meaning, std::vector<Field
                   std::vector<Entity> out;
                   r.view<Component>().each([&](Entity e, auto&&...) { out.push_back(e); });
                   return out;
-                }};
+                },
+                [](const Registry& r) { return r.size<Component>(); }};
 }
 
 const Schema* find_schema(std::span<const Schema> schemas, std::string_view name);
