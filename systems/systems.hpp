@@ -1,0 +1,27 @@
+#pragma once
+// The two lists of the engine: its systems in frame order, and the passes they offer to the render scripts.
+
+#include <string_view>
+#include <vector>
+
+#include "engine/ecs/schedule.hpp"
+#include "engine/graph/graph.hpp"
+#include "systems/system_context.hpp"
+
+namespace petrichor {
+
+std::vector<SystemEntry<SystemContext>> all_systems();
+// Things a system may read that no system writes: "time", "input".
+std::vector<std::string_view> outside_resources();
+
+std::vector<PassOffer> all_passes();
+
+// The techniques an effect can be drawn by, for --technique and `info`.
+struct Technique {
+  std::string_view effect;
+  std::string_view rung;
+  std::string_view meaning;
+};
+std::vector<Technique> all_techniques();
+
+}  // namespace petrichor
