@@ -51,6 +51,7 @@ struct Material {
   float alpha_cutoff = 0.5f;
   AlphaMode alpha_mode = AlphaMode::opaque;
   bool double_sided = false;
+  bool unlit = false;  // KHR_materials_unlit: the base colour is what is seen, lights do not matter
   TextureUse base_colour_texture, metallic_roughness_texture, normal_texture, occlusion_texture, emissive_texture;
   std::string extras_json;  // "" or a JSON object
 };
