@@ -39,6 +39,8 @@ struct PassOffer {
   std::unordered_map<std::string, ShaderKey> shaders;  // loaded before the first execution
   std::function<bool(const Frame&)> wanted;          // empty: always. False: nothing in the scene asks for it
   std::function<void(PassContext&)> execute;
+  bool side_effect = false;  // runs also where nobody reads what it writes. So does a pass without write or modify slots.
+  std::function<Result<void>(const Program&)> check;  // after the shaders are loaded; empty: nothing to check
 };
 
 struct PassContext {
@@ -89,6 +91,9 @@ class Graph {
   // Runs the passes that the frame asks for; returns the texture the table names as output. Valid until the
   // next execute. A failure (shader, missing writer) names pass and resource.
   Result<const Texture*> execute(const Frame&, int width, int height, FrameTimer&);
+  // The texture that the table's optional `linear_output` names (scene-linear light before the tone map), kept
+  // whole to the end of the frame; null where the table names none. Valid as long as execute's result.
+  const Texture* linear_output() const;
   // Forget history and transient textures (a cut, a new scene).
   void reset();
 
@@ -97,8 +102,9 @@ class Graph {
   std::span<const PassOffer> offers() const;
   std::vector<std::string> files() const;  // artist shaders, for the reload watch
 
- private:
   struct Impl;
+
+ private:
   std::unique_ptr<Impl> impl_;
 };
 
