@@ -1,6 +1,7 @@
 #pragma once
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <glm/gtc/quaternion.hpp>
 
 namespace petrichor {
 
@@ -13,6 +14,16 @@ struct Camera {
   float exposure_ev100 = 3.0f;
   float bloom = 0.06f;  // share of the light that the lens scatters
   bool active = true;
+};
+
+// Where the camera was at the last two ticks: kept by systems/geometry for interpolation and motion streaks.
+// Not for scripts.
+struct CameraMotion {
+  glm::vec3 previous_position_m{0.0f};
+  glm::quat previous_orientation{1.0f, 0.0f, 0.0f, 0.0f};
+  glm::vec3 position_m{0.0f};
+  glm::quat orientation{1.0f, 0.0f, 0.0f, 0.0f};
+  bool moving_known = false;  // false on the first tick and after a jump: no velocity then
 };
 
 // One primitive set of a loaded model: which model, and which of its meshes.

@@ -43,6 +43,7 @@ struct FrameLight {
   float source_radius_m;
   int kind;              // LIGHT_*
   bool casts_shadow, lights_rain;
+  int shadow_slot = -1;  // in the shadow maps; set by whoever draws them before the lights are uploaded
 };
 
 struct FrameMist {
@@ -71,7 +72,7 @@ struct Frame {
   std::uint64_t lights_version = 0;
   std::optional<FrameRain> rain;  // absent, or its rate 0: no rain pass runs
   GpuScene* scene = nullptr;
-  FrameUniforms uniforms{};       // filled last, by systems/frame_gpu
+  FrameUniforms uniforms{};       // filled last, by finish_frame (systems/frame_gpu.hpp)
 };
 
 }  // namespace petrichor

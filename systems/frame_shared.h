@@ -19,7 +19,6 @@ using uint = std::uint32_t;
 #define FRAME_UNIFORMS_BINDING 0  // uniform block FrameBlock { FrameUniforms frame; }
 #define LIGHTS_BINDING 0          // buffer, LightGpu lights[]
 #define INSTANCES_BINDING 1       // buffer, InstanceGpu instances[]
-#define MATERIALS_BINDING 2       // buffer, MaterialGpu materials[] (systems/geometry)
 #define OCCLUSION_UNIFORMS_BINDING 1  // uniform block, OcclusionUniforms (systems/occlusion)
 #define OCCLUSION_UNIT 15         // texture unit of the occlusion map in shaders that include occlusion.glsl
 

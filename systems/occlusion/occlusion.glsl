@@ -13,7 +13,7 @@ layout(binding = OCCLUSION_UNIT) uniform sampler2D occlusion_depth;
 // far it would have fallen since its impact. Outside the map or over nothing: a large distance.
 float first_hit_distance_m(vec3 relative_position) {
   vec3 p = (occlusion.map_from_relative * vec4(relative_position, 1.0)).xyz;  // texture xy, metres along the fall
-  if (occlusion.fall_texel.w <= 0.0 || any(greaterThan(abs(p.xy - 0.5), vec2(0.5)))) return 1e6;
+  if (occlusion.fall_texel.w <= 0.0 || any(greaterThanEqual(abs(p.xy - 0.5), vec2(0.5)))) return 1e6;
   float depth = texelFetch(occlusion_depth, ivec2(p.xy * occlusion.size_depth.x), 0).r;
   if (depth <= 0.0) return 1e6;
   return (1.0 - depth) * occlusion.size_depth.y - p.z;

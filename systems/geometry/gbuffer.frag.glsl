@@ -1,0 +1,18 @@
+#version 450 core
+#define GBUFFER_WRITER
+#include "systems/geometry/material.glsl"
+
+layout(location = 0) out vec4 out_albedo;
+layout(location = 1) out vec4 out_normal;
+layout(location = 2) out vec3 out_emissive;
+
+void main() {
+  vec4 colour = base_colour();
+  Surface s = material_surface(colour);
+#if (MATERIAL_VARIANT & 16) != 0
+  if (colour.a < material.emissive_cutoff.w) discard;
+#endif
+  out_albedo = encode_albedo(s);
+  out_normal = encode_normal(s);
+  out_emissive = min(s.emissive, vec3(60000.0));
+}
