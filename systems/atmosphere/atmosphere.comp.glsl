@@ -1,0 +1,59 @@
+#version 450 core
+// What lies between the surfaces and the eye: extinction by mist and far rain, the mist's own light, and the sky
+// where nothing else is. Modifies colour in place.
+#include "systems/geometry/position.glsl"
+#include "systems/lighting/environment.glsl"
+#include "systems/sky.glsl"
+
+layout(local_size_x = 8, local_size_y = 8) in;
+layout(binding = 0) uniform sampler2D depth_map;
+layout(binding = 1) uniform sampler2D airlight;
+layout(binding = 0, rgba16f) uniform image2D colour;
+uniform vec2 airlight_size;
+uniform float airlight_scale;
+uniform float mist_height_m;  // of the layer that a ray to the sky passes through
+uniform float reach_m;
+
+// The four nearest airlight pixels, those at the same distance foremost: halos do not leak across edges.
+vec3 enlarged_airlight(vec2 pixel, float distance_m) {
+  vec2 place = pixel / airlight_scale - 0.5;
+  vec2 base = floor(place);
+  vec2 f = place - base;
+  vec3 sum = vec3(0.0);
+  float weights = 0.0;
+  for (int i = 0; i < 4; ++i) {
+    ivec2 offset = ivec2(i & 1, i >> 1);
+    vec4 sampled = texelFetch(airlight, clamp(ivec2(base) + offset, ivec2(0), ivec2(airlight_size) - 1), 0);
+    float share = (offset.x == 1 ? f.x : 1.0 - f.x) * (offset.y == 1 ? f.y : 1.0 - f.y);
+    float weight = (share + 1e-3) / (0.02 + abs(sampled.a - distance_m) / distance_m);
+    sum += sampled.rgb * weight;
+    weights += weight;
+  }
+  return sum / weights;
+}
+
+void main() {
+  ivec2 texel = ivec2(gl_GlobalInvocationID.xy);
+  if (any(greaterThanEqual(texel, ivec2(frame.size.xy)))) return;
+  float depth = texelFetch(depth_map, texel, 0).r;
+  vec3 place = relative_position(vec2(texel) + 0.5, max(depth, 1e-7));
+  float squared = dot(place, place);
+  vec3 ray = place * inversesqrt(squared);
+  // Without a surface: through the layer of mist, at most reach_m.
+  float distance_m = depth > 0.0 ? sqrt(squared) : min(mist_height_m / max(ray.y, 1e-3), reach_m);
+  float thickness = (frame.mist.x + frame.rain.z) * distance_m +
+                    frame.rain.x * max(distance_m - frame.rain.y, 0.0);
+  float passes = exp(-thickness);
+
+  vec3 surface = depth > 0.0 ? imageLoad(colour, texel).rgb : sky_radiance(ray);
+#ifdef ENVIRONMENT
+  vec3 ambient = environment_mean() * frame.sky_zenith.w;
+#else
+  vec3 ambient = frame.sky_horizon.rgb * (0.5 * frame.sky_zenith.w);
+#endif
+  vec3 result = surface * passes + ambient * frame.mist.yzw * (1.0 - passes);
+#ifdef AIRLIGHT
+  result += enlarged_airlight(vec2(texel) + 0.5, min(depth > 0.0 ? distance_m : reach_m, reach_m));
+#endif
+  imageStore(colour, texel, vec4(result, 1.0));
+}
