@@ -41,6 +41,7 @@ struct Walker {
   float run_mps = 4.5f;
   float fly_mps = 10.0f;
   bool flying = false;
+  bool on_ground = false;
   glm::vec3 velocity_mps{0.0f};
   float yaw_deg = 0.0f;
   float pitch_deg = 0.0f;

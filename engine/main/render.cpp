@@ -1,0 +1,127 @@
+#include <fmt/format.h>
+
+#include <chrono>
+#include <nlohmann/json.hpp>
+
+#include "engine/app/progress.hpp"
+#include "engine/app/recorder.hpp"
+#include "engine/core/log.hpp"
+#include "engine/core/paths.hpp"
+#include "engine/main/commands.hpp"
+#include "engine/main/renderer.hpp"
+#include "engine/main/stats.hpp"
+#include "engine/main/world.hpp"
+#include "systems/rainfall/stats.hpp"
+
+namespace petrichor {
+namespace {
+
+namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
+const Clock::time_point program_start = Clock::now();
+
+double milliseconds_since(Clock::time_point start) {
+  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+}
+
+struct Job {
+  int width, height;
+  double fps;
+  FrameRange frames;
+  RecordTarget target;
+};
+
+// What the call leaves open the script decides, and what it leaves open has a default.
+Result<Job> plan(const RenderOptions& options, const World& world, bool is_script) {
+  const Cinematic& said = world.cinematic();
+  Job job;
+  job.width = options.width ? options.width : said.size_px ? said.size_px->x : 1280;
+  job.height = options.height ? options.height : said.size_px ? said.size_px->y : 720;
+  job.fps = options.fps > 0.0 ? options.fps : said.fps.value_or(24.0);
+  if (options.frames) job.frames = *options.frames;
+  else if (said.duration_s) job.frames = {0, std::max<std::int64_t>(1, std::llround(*said.duration_s * job.fps))};
+  else job.frames = {0, 1};
+  fs::path out = options.out;
+  if (out.empty()) {
+    const bool film = job.frames.end - job.frames.begin > 1;
+    out = fs::path("out") / (options.subject.subject.stem().string() + (film ? ".mp4" : ".png"));
+  }
+  (void)is_script;
+  auto target = record_target(out, job.frames.end - job.frames.begin);
+  if (!target) return tl::unexpected(target.error());
+  job.target = *target;
+  return job;
+}
+
+}  // namespace
+
+Result<void> render(const RenderOptions& options) {
+  ContextOptions context;
+  auto opened = open_renderer(false, context);
+  if (!opened) return tl::unexpected(opened.error());
+  Renderer& renderer = **opened;
+  auto world_opened = World::open(options.subject, renderer.scene.get());
+  if (!world_opened) return tl::unexpected(world_opened.error());
+  World& world = **world_opened;
+  const auto job = plan(options, world, true);
+  if (!job) return tl::unexpected(job.error());
+  if (auto loaded = load_render_script(renderer, world.render_script()); !loaded) return loaded;
+  auto recorder = make_recorder(job->target, job->width, job->height, job->fps);
+  if (!recorder) return tl::unexpected(recorder.error());
+
+  const bool want_stats = !options.stats.empty();
+  const bool linear = job->target.kind == RecordKind::exr;
+  RunStats stats;
+  std::uint64_t drops_drawn = 0;
+  std::vector<std::uint8_t> bytes;
+  std::vector<float> floats;
+  Frame frame;
+  Progress progress("rendering", job->frames.end - job->frames.begin);
+  for (std::int64_t number = job->frames.begin; number < job->frames.end; ++number) {
+    const double time_s = static_cast<double>(number) / job->fps;
+    if (auto advanced = world.advance_to(time_s); !advanced) return advanced;
+    world.extract(frame, static_cast<std::uint64_t>(number), time_s, job->width, job->height);
+
+    const auto start = Clock::now();
+    const auto picture = draw(renderer, frame, false);
+    if (!picture) return tl::unexpected(picture.error());
+    if (want_stats) {
+      glFinish();
+      const bool first = number == job->frames.begin;
+      if (first) stats.start_to_first_frame_s = milliseconds_since(program_start) / 1000.0;
+      // The first frame compiles shaders and fills caches: it counts only where it is the only one.
+      if (!first || job->frames.end - job->frames.begin == 1) stats.frame_ms.push_back(milliseconds_since(start));
+      if (renderer.device.software) {
+        // Passes are timed on a second drawing of the same frame, so that their glFinishes do not cost the first.
+        if (number % 8 == 0 || first) {
+          if (auto again = draw(renderer, frame, true); !again) return tl::unexpected(again.error());
+          if (!first || job->frames.end - job->frames.begin == 1) stats.add(renderer.timer->collect());
+          else renderer.timer->collect();
+        }
+      } else {
+        stats.add(renderer.timer->collect());
+      }
+      drops_drawn = rain_stats().drops_drawn;
+    }
+    Picture recorded{job->width, job->height, {}, {}};
+    if (linear) {
+      read_picture(*renderer.graph->linear_output(), floats);
+      recorded.rgba32f = floats;
+    } else {
+      read_picture(**picture, bytes);
+      recorded.rgba8 = bytes;
+    }
+    if (auto added = (*recorder)->add(number, recorded); !added) return added;
+    progress.advance_to(number - job->frames.begin + 1);
+  }
+  if (auto finished = (*recorder)->finish(); !finished) return finished;
+  if (want_stats) {
+    const auto json = to_json(stats, renderer.device, job->width, job->height, job->frames.end - job->frames.begin, drops_drawn,
+                              renderer.timer->gpu_times_are_real());
+    if (auto written = write_whole_file(options.stats, json.dump(2) + "\n"); !written) return written;
+  }
+  log_info("{} ({}x{}, {} frames)", job->target.file.string(), job->width, job->height, job->frames.end - job->frames.begin);
+  return {};
+}
+
+}  // namespace petrichor

@@ -1,0 +1,197 @@
+#include "engine/main/world.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "components/components.hpp"
+#include "engine/core/log.hpp"
+#include "engine/core/paths.hpp"
+#include "systems/gpu_scene.hpp"
+#include "systems/scene/propagate.hpp"
+#include "systems/scene/spawn.hpp"
+
+namespace petrichor {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool is_model(const fs::path& file) {
+  std::string extension = file.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(), [](unsigned char c) { return std::tolower(c); });
+  return extension == ".gltf" || extension == ".glb";
+}
+
+// A path of a script or of the command line: as given, else among the program's own files.
+Result<fs::path> find_file(const fs::path& file) {
+  std::error_code ignored;
+  if (fs::exists(file, ignored)) return fs::absolute(file);
+  return find_data(file);
+}
+
+// "component.field=value": numbers, true/false and [x, y, z] are JSON; "x,y,z" is a vector; the rest is text.
+nlohmann::json parse_value(const std::string& text) {
+  auto value = nlohmann::json::parse(text, nullptr, false);
+  if (!value.is_discarded() && !value.is_object()) return value;
+  if (text.find(',') != std::string::npos) {
+    value = nlohmann::json::parse("[" + text + "]", nullptr, false);
+    if (!value.is_discarded()) return value;
+  }
+  return text;
+}
+
+Result<std::pair<glm::vec3, glm::vec3>> bounds_of(Registry& registry, const std::vector<std::shared_ptr<const Model>>& models,
+                                                  std::span<const Entity> entities) {
+  propagate(registry);
+  constexpr float infinity = std::numeric_limits<float>::infinity();
+  glm::vec3 low(infinity), high(-infinity);
+  for (const Entity entity : entities) {
+    const auto* instance = registry.find<MeshInstance>(entity);
+    const auto* placed = registry.find<WorldTransform>(entity);
+    if (!instance || !placed || instance->model >= models.size()) continue;
+    const Model& model = *models[instance->model];
+    if (instance->mesh >= model.meshes.size()) continue;
+    for (const Primitive& primitive : model.meshes[instance->mesh].primitives)
+      for (int corner = 0; corner < 8; ++corner) {
+        const glm::vec3 at(corner & 1 ? primitive.bounds_max_m.x : primitive.bounds_min_m.x,
+                           corner & 2 ? primitive.bounds_max_m.y : primitive.bounds_min_m.y,
+                           corner & 4 ? primitive.bounds_max_m.z : primitive.bounds_min_m.z);
+        const glm::vec3 world = placed->matrix * glm::vec4(at, 1.0f);
+        low = glm::min(low, world);
+        high = glm::max(high, world);
+      }
+  }
+  if (!(low.x <= high.x)) return failure("these entities draw nothing, so they have no bounds");
+  return std::pair{low, high};
+}
+
+}  // namespace
+
+World::World(GpuScene* scene, std::uint32_t seed)
+    : schedule_(all_systems(), component_schemas()), scene_(scene), seed_(seed) {}
+
+Result<std::vector<Entity>> World::spawn(const fs::path& file) {
+  const auto found = find_file(file);
+  if (!found) return tl::unexpected(found.error());
+  auto loaded = load_model(*found);
+  if (!loaded) return tl::unexpected(loaded.error());
+  for (const std::string& warning : loaded->warnings) log_warn("{}", warning);
+  auto model = std::make_shared<Model>(std::move(*loaded));
+  const auto index = static_cast<std::uint32_t>(models_.size());
+  if (scene_) scene_->add(*model);
+  // Pixels are on the GPU now; a city's worth of them need not stay here too.
+  for (Image& image : model->images) image.pixels = {};
+  models_.push_back(model);
+  return spawn_model(registry_, *model, index);
+}
+
+Result<std::unique_ptr<World>> World::open(const SubjectOptions& options, GpuScene* scene) {
+  const auto subject = find_file(options.subject);
+  if (!subject) return tl::unexpected(subject.error());
+  std::unique_ptr<World> world(new World(scene, options.seed));
+
+  ScriptOptions script;
+  for (const fs::path& root : data_roots())
+    if (std::error_code ignored; fs::is_directory(root / "scripts", ignored)) script.roots.push_back(root / "scripts");
+  script.seed = options.seed;
+  World* self = world.get();
+  script.services.load_model = [self](const fs::path& file) { return self->spawn(file); };
+  script.services.bounds = [self](std::span<const Entity> entities) { return bounds_of(self->registry_, self->models_, entities); };
+  script.services.set_parent = [self](Entity child, Entity parent) -> Result<void> {
+    self->registry_.emplace_or_replace<Parent>(child, Parent{parent});
+    return {};
+  };
+
+  Result<fs::path> file = *subject;
+  if (is_model(*subject)) {
+    script.arguments.emplace_back("model", subject->string());
+    file = find_data("scripts/scenes/model.lua");
+    if (!file) return tl::unexpected(file.error());
+  }
+  world->script_ = std::make_unique<ScriptHost>(world->registry_, component_schemas(), std::move(script));
+  if (auto ran = world->script_->run_file(*file); !ran) return tl::unexpected(ran.error());
+  if (auto applied = world->apply_options(options); !applied) return tl::unexpected(applied.error());
+  if (auto first = world->advance_to(0.0); !first) return tl::unexpected(first.error());
+  return world;
+}
+
+Result<void> World::apply_options(const SubjectOptions& options) {
+  registry_.view<Emitter>().each([&](Entity, Emitter& emitter) { emitter.seed ^= (options.seed - 1) * 0x9e3779b9u; });
+  for (const std::string& text : options.sets) {
+    const auto equals = text.find('=');
+    const std::string target = text.substr(0, equals);
+    const auto dot = target.find('.');
+    if (dot == std::string::npos) return failure(fmt::format("--set {}: expected component.field=value", text));
+    if (auto pinned = script_->pin(target.substr(0, dot), target.substr(dot + 1), parse_value(text.substr(equals + 1))); !pinned)
+      return failure(fmt::format("--set {}: {}", text, pinned.error().message));
+  }
+  for (const std::string& text : options.techniques) {
+    const auto equals = text.find('=');
+    const std::string effect = text.substr(0, equals), rung = text.substr(equals + 1);
+    std::string known;
+    bool found = false;
+    for (const Technique& technique : all_techniques()) {
+      found |= technique.effect == effect && technique.rung == rung;
+      known += fmt::format("\n  {}={}  {}", technique.effect, technique.rung, technique.meaning);
+    }
+    if (!found) return failure(fmt::format("--technique {}: no such technique. There are:{}", text, known));
+    // Fog alone is the drop field whose every drop is farther than it draws.
+    if (effect == "rainfall" && rung == "fog")
+      if (auto pinned = script_->pin("emitter", "drawn_distance_m", 0.0); !pinned) return pinned;
+  }
+  return {};
+}
+
+SystemContext World::context() {
+  SystemContext context{registry_, commands_, 0.0, simulation_step_s, 1.0, {}, models_};
+  context.collision = collision_.get();
+  context.advance_script = [this](double time_s) { return script_->advance(time_s); };
+  return context;
+}
+
+Result<void> World::advance_to(double time_s, const PlayerInput& input) {
+  // The tolerance keeps frame times that are whole ticks, but for rounding, at their tick.
+  const auto last = static_cast<std::int64_t>(std::ceil(time_s / simulation_step_s - 1e-6));
+  if (!collision_ && has_walker()) collision_ = std::make_unique<CollisionScene>(registry_, models_);
+  PlayerInput rest = input;
+  const auto steps = std::max<std::int64_t>(last - tick_, 1);
+  rest.turn_right_deg /= static_cast<float>(steps);
+  rest.turn_up_deg /= static_cast<float>(steps);
+  Result<void> outcome;
+  while (tick_ < last) {
+    ++tick_;
+    SystemContext now = context();
+    now.time_s = static_cast<double>(tick_) * simulation_step_s;
+    now.input = rest;
+    rest.toggle_flying = false;  // pressed once, whatever the number of ticks
+    schedule_.run(now, registry_, commands_, Phase::input, Phase::propagate);
+    if (!now.script_result && outcome) outcome = now.script_result;
+  }
+  return outcome;
+}
+
+bool World::has_walker() {
+  bool found = false;
+  registry_.view<const Walker>().each([&](Entity, const Walker&) { found = true; });
+  return found;
+}
+
+void World::extract(Frame& frame, std::uint64_t number, double time_s, int width, int height) {
+  frame = Frame{};
+  frame.number = number;
+  frame.time_s = time_s;
+  frame.width = width;
+  frame.height = height;
+  frame.scene = scene_;
+  SystemContext now = context();
+  now.time_s = time_s;
+  now.interpolation = std::clamp(1.0 - (static_cast<double>(tick_) - time_s / simulation_step_s), 0.0, 1.0);
+  now.frame = &frame;
+  schedule_.run(now, registry_, commands_, Phase::extract, Phase::extract);
+}
+
+fs::path World::render_script() const { return cinematic().render.value_or("scripts/render/city.lua"); }
+
+}  // namespace petrichor
