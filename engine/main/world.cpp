@@ -44,7 +44,7 @@ nlohmann::json parse_value(const std::string& text) {
 
 Result<std::pair<glm::vec3, glm::vec3>> bounds_of(Registry& registry, const std::vector<std::shared_ptr<const Model>>& models,
                                                   std::span<const Entity> entities) {
-  propagate(registry);
+  propagate_transforms(registry);
   constexpr float infinity = std::numeric_limits<float>::infinity();
   glm::vec3 low(infinity), high(-infinity);
   for (const Entity entity : entities) {

@@ -34,6 +34,7 @@ class World {
   ScriptHost& script() { return *script_; }
   const Cinematic& cinematic() const { return script_->cinematic(); }
   std::filesystem::path render_script() const;
+  const std::vector<std::filesystem::path>& script_files() const { return script_->files(); }
   std::span<const SystemStats> system_stats() const { return schedule_.stats(); }
   std::uint32_t seed() const { return seed_; }
 
