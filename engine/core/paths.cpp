@@ -155,8 +155,9 @@ Result<void> write_whole_file(const fs::path& asked, std::span<const std::byte> 
   if (fs::exists(status) && !fs::is_regular_file(status)) return write_in_place(asked, bytes);
   // Through a symbolic link, so that the link stays and its target changes.
   fs::path path = asked;
-  if (fs::is_symlink(fs::symlink_status(asked, error))) {
-    path = fs::weakly_canonical(asked, error);
+  for (int links = 0; fs::is_symlink(fs::symlink_status(path, error)); ++links) {
+    if (links == 40) return cannot_write(asked, ELOOP);  // as many as Linux follows
+    path = path.parent_path() / fs::read_symlink(path, error);
     if (error) return cannot_write(asked, error.value());
   }
   if (path.has_parent_path()) {

@@ -4,7 +4,9 @@
 // The hash is pcg4d of Jarzynski and Olano, "Hash Functions for GPU Rendering", JCGT 9(3), 2020,
 // listing in appendix A. GLSL includes engine/core/random.glsl, C++ engine/core/random.hpp; each defines
 //   RANDOM_FN     the prefix of a function
-//   uint, uvec4, vec4, vec3   (C++: from glm)
+//   uint, uvec4, vec4   (C++: from glm)
+// Keys should differ in their low 24 bits: a difference in the top bits alone (a class packed above a
+// cell, say) is mixed poorly. Small negative coordinates differ in all bits and are fine.
 // Only integer arithmetic modulo 2^32, exact conversions and products by powers of two stand here, so
 // the results agree bit for bit. The exception is poisson_count: GLSL leaves the last bits of exp and of
 // a division open, so about one count in a million may differ between two machines.

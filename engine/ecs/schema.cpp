@@ -62,8 +62,8 @@ std::string expected_words(const Field& f) {
     case FieldType::rotation: return "an array [x, y, z, w], a quaternion of length 1";
     case FieldType::text: return "a string";
     case FieldType::choice: {
-      std::string words = "one of";
-      for (const std::string_view c : f.choices) words += fmt::format("{} \"{}\"", &c == &f.choices[0] ? "" : ",", c);
+      std::string words;
+      for (const std::string_view c : f.choices) words += fmt::format("{} \"{}\"", words.empty() ? "one of" : ",", c);
       return words;
     }
   }
