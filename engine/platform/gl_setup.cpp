@@ -20,6 +20,8 @@ void on_debug_message(GLenum source, GLenum type, GLuint, GLenum severity, GLsiz
                       const void*) {
   // Shader compile and link failures come back as Result values from the shader loader.
   if (source == GL_DEBUG_SOURCE_SHADER_COMPILER) return;
+  // Where a driver keeps a buffer is its own affair.
+  if (type == GL_DEBUG_TYPE_PERFORMANCE && severity != GL_DEBUG_SEVERITY_HIGH) return;
   std::string message(text, length >= 0 ? static_cast<std::size_t>(length) : std::char_traits<char>::length(text));
   while (!message.empty() && (message.back() == '\n' || message.back() == ' ')) message.pop_back();
   std::lock_guard lock(message_mutex);

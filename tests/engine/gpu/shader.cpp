@@ -192,11 +192,11 @@ TEST_F(Shader, AFailingReloadKeepsTheLastGoodProgram) {
   data.write("m.comp.glsl", writes("u_a", "uniform int u_a;\n"));
   const Program* program = *library.load({{"m.comp.glsl"}, {}});
   program->set("u_a", 5);
-  data.write("m.comp.glsl", "layout(local_size_x = 1) in;\nbroken\n");
+  data.write("m.comp.glsl", "layout(local_size_x = 1) in;\nvoid main() {\n  broken;\n}\n");
   bool changed = true;
   auto failures = library.reload_changed(&changed);
   ASSERT_EQ(failures.size(), 1u);
-  EXPECT_TRUE(has(failures[0], "m.comp.glsl:")) << failures[0];
+  EXPECT_TRUE(has(failures[0], "m.comp.glsl:3: ")) << failures[0];
   EXPECT_FALSE(changed);
   EXPECT_EQ(result(*program), 5u);
   EXPECT_TRUE(library.reload_changed().empty()) << "said once, not every time";

@@ -31,7 +31,7 @@ TEST(Headless, GivesACoreContextOfAtLeast45) {
 TEST(Headless, SoftwareIsRecognised) {
   const Variable wish("PETRICHOR_DEVICE", "software");
   auto context = make_headless_context({});
-  ASSERT_TRUE(context) << context.error().message;
+  if (!context) GTEST_SKIP() << context.error().message;  // a machine with a GPU and without Mesa
   EXPECT_TRUE((*context)->device().software) << (*context)->device().renderer;
 }
 
@@ -68,9 +68,10 @@ TEST(Headless, AnImpossibleWishIsAMessage) {
   EXPECT_NE(context.error().message.find("number below"), std::string::npos);
 }
 
-// Mesa can be told to offer less than it has; other drivers ignore it, and the test is then about nothing.
+// Mesa can be told to offer less than it has; no other driver listens.
 TEST(Headless, TooOldAnOpenGlSaysWhatWasFoundAndWhatIsNeeded) {
   const Variable software("PETRICHOR_DEVICE", "software");
+  if (!make_headless_context({})) GTEST_SKIP() << "no Mesa";
   const Variable old("MESA_GL_VERSION_OVERRIDE", "3.3");
   auto context = make_headless_context({});
   ASSERT_FALSE(context);
