@@ -10,26 +10,17 @@ layout(local_size_x = 8, local_size_y = 8) in;
 #include "systems/geometry/gbuffer.glsl"
 layout(binding = 0, rgba16f) uniform writeonly image2D radiance;
 
-// The inverse of face_from_direction.
-vec3 direction_of_face(vec2 p, int face) {
-  vec2 q = p * 2.0 - 1.0;
-  if (face == 0) return vec3(1.0, q.y, -q.x);
-  if (face == 1) return vec3(-1.0, q.y, q.x);
-  if (face == 2) return vec3(q.x, 1.0, -q.y);
-  if (face == 3) return vec3(q.x, -1.0, q.y);
-  if (face == 4) return vec3(q.x, q.y, 1.0);
-  return vec3(-q.x, q.y, -1.0);
-}
+uniform float near_m;  // of the capture
 
 void main() {
   ivec2 texel = ivec2(gl_GlobalInvocationID.xy);
   if (texel.x >= 6 * ENVIRONMENT_FACE || texel.y >= ENVIRONMENT_FACE) return;
   int face = texel.x / ENVIRONMENT_FACE;
   vec2 inside = (vec2(texel.x % ENVIRONMENT_FACE, texel.y) + 0.5) / float(ENVIRONMENT_FACE);
-  vec3 axial = direction_of_face(inside, face);
+  vec3 axial = direction_of_face(inside * 2.0 - 1.0, face);
   float depth = read_depth(texel);
   Surface surface = read_surface(texel);
-  vec3 place = axial * axial_distance_m(max(depth, 1e-7));
+  vec3 place = axial * (near_m / max(depth, 1e-7));
 
   vec3 irradiance = vec3(0.0);
   for (uint i = 0u; i < chosen.counts.x; ++i) {

@@ -2,21 +2,13 @@
 // Radiance on six faces -> nine coefficients, one a work group, convolved with the cosine and divided by pi
 // (Ramamoorthi and Hanrahan 2001, "An Efficient Representation for Irradiance Environment Maps").
 #include "systems/lighting/lighting_shared.h"
+#include "systems/lighting/octahedral.glsl"
 
 layout(local_size_x = 64) in;
 layout(binding = 0) uniform sampler2D radiance;
 layout(binding = 0, rgba16f) uniform writeonly image2D environment;
 
 shared vec4 partial[64];
-
-vec3 direction_of_face(vec2 q, int face) {
-  if (face == 0) return vec3(1.0, q.y, -q.x);
-  if (face == 1) return vec3(-1.0, q.y, q.x);
-  if (face == 2) return vec3(q.x, 1.0, -q.y);
-  if (face == 3) return vec3(q.x, -1.0, q.y);
-  if (face == 4) return vec3(q.x, q.y, 1.0);
-  return vec3(-q.x, q.y, -1.0);
-}
 
 float basis(int i, vec3 n) {
   if (i == 0) return 0.282095;

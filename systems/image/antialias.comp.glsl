@@ -1,0 +1,86 @@
+#version 450 core
+// Smooths the stairs of edges in the finished picture, and dithers it to 8 bits. Where luminance changes at once
+// between two pixels, the edge is followed to both its ends; how near the nearer end is says how much of the pixel
+// lies on the other side (the idea of Lottes 2009, "FXAA", and of Reshetov 2009, "Morphological Antialiasing").
+// No earlier frames are used: each frame stands alone.
+#include "systems/frame.glsl"
+#include "systems/image/tone.h"
+
+layout(local_size_x = 8, local_size_y = 8) in;
+layout(binding = 0) uniform sampler2D display;  // alpha: luminance of the display values
+layout(binding = 0, rgba8) uniform writeonly image2D result;
+uniform float least_contrast;    // of white: fainter edges stay
+uniform float relative_contrast;  // of the brightest neighbour
+uniform float softening;         // 0..1: of single bright or dark pixels
+
+const int STEPS = 7;
+const float STEP[STEPS] = float[STEPS](1.0, 1.0, 1.5, 2.0, 2.0, 3.0, 4.0);
+
+float luma(vec2 pixel) { return textureLod(display, pixel * frame.size.zw, 0.0).a; }
+
+void main() {
+  ivec2 texel = ivec2(gl_GlobalInvocationID.xy);
+  ivec2 last = ivec2(frame.size.xy) - 1;
+  if (any(greaterThan(texel, last))) return;
+  vec2 pixel = vec2(texel) + 0.5;
+
+  // Gathers about the pixel's lower left and upper right corners hold all nine neighbours but two.
+  vec4 centre = texelFetch(display, texel, 0);
+  float m = centre.a;
+  vec4 low = textureGather(display, (pixel - 0.5) * frame.size.zw, 3);   // x: west, y: this, z: south, w: south-west
+  vec4 high = textureGather(display, (pixel + 0.5) * frame.size.zw, 3);  // x: north, y: north-east, z: east, w: this
+  float west = low.x, south = low.z, south_west = low.w;
+  float north = high.x, east = high.z, north_east = high.y;
+  float brightest = max(m, max(max(west, east), max(north, south)));
+  float darkest = min(m, min(min(west, east), min(north, south)));
+  float contrast = brightest - darkest;
+  bool edge = contrast > max(least_contrast, relative_contrast * brightest);
+
+  float north_west = texelFetch(display, clamp(texel + ivec2(-1, 1), ivec2(0), last), 0).a;
+  float south_east = texelFetch(display, clamp(texel + ivec2(1, -1), ivec2(0), last), 0).a;
+
+  // How much the pixel stands out from a tent over its neighbours.
+  float mean = (2.0 * (north + south + east + west) + north_west + north_east + south_west + south_east) / 12.0;
+  float alone = clamp(abs(mean - m) / max(contrast, 1e-4), 0.0, 1.0);
+  alone = alone * alone * (3.0 - 2.0 * alone);
+  float by_contrast = alone * alone * softening;
+
+  float across_rows = abs(north_west + south_west - 2.0 * west) + 2.0 * abs(north + south - 2.0 * m) +
+                      abs(north_east + south_east - 2.0 * east);
+  float across_columns = abs(south_west + south_east - 2.0 * south) + 2.0 * abs(west + east - 2.0 * m) +
+                         abs(north_west + north_east - 2.0 * north);
+  bool level = across_rows >= across_columns;  // the edge runs along the row
+  float one = level ? south : west, other = level ? north : east;
+  bool towards_one = abs(one - m) >= abs(other - m);
+  float gradient = max(abs(one - m), abs(other - m));
+  vec2 normal = (level ? vec2(0.0, 1.0) : vec2(1.0, 0.0)) * (towards_one ? -1.0 : 1.0);
+  vec2 along = level ? vec2(1.0, 0.0) : vec2(0.0, 1.0);
+
+  // Walk on the line between the two rows; where the mean of both leaves that of the edge, it ends.
+  float edge_luma = 0.5 * (m + (towards_one ? one : other));
+  vec2 start = pixel + 0.5 * normal;
+  float back = 0.0, forth = 0.0, back_end = 0.0, forth_end = 0.0;
+  bool back_done = !edge, forth_done = !edge;
+  for (int i = 0; i < STEPS; ++i) {
+    if (back_done && forth_done) break;
+    if (!back_done) {
+      back += STEP[i];
+      back_end = luma(start - along * back) - edge_luma;
+      back_done = abs(back_end) >= 0.25 * gradient;
+    }
+    if (!forth_done) {
+      forth += STEP[i];
+      forth_end = luma(start + along * forth) - edge_luma;
+      forth_done = abs(forth_end) >= 0.25 * gradient;
+    }
+  }
+  bool back_nearer = back < forth;
+  float nearer_end = back_nearer ? back_end : forth_end;
+  // Only where the edge ends towards the other side does this pixel hold a piece of that side.
+  bool turns = (nearer_end < 0.0) != (m < edge_luma);
+  float by_edge = turns ? 0.5 - min(back, forth) / max(back + forth, 1e-4) : 0.0;
+
+  float shift = edge ? max(by_edge, by_contrast) : 0.0;
+  vec3 shown = textureLod(display, (pixel + normal * shift) * frame.size.zw, 0.0).rgb;
+  imageStore(result, texel, vec4(dithered(shown, pixel), 1.0));
+}

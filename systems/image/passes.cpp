@@ -1,0 +1,110 @@
+#include "systems/image/passes.hpp"
+
+#include <algorithm>
+#include <string>
+
+#include "systems/frame.hpp"
+
+namespace petrichor {
+namespace {
+
+glm::ivec2 level_size(const Texture& texture, int level) {
+  return {std::max(texture.width >> level, 1), std::max(texture.height >> level, 1)};
+}
+
+void blur(PassContext& context) {
+  const Texture& pyramid = context.texture("bloom");
+  const int levels = pyramid.levels;
+  const Program& down = context.program("down");
+  down.use();
+  for (int level = 0; level < levels; ++level) {
+    const glm::ivec2 size = level_size(pyramid, level);
+    if (level == 0) {
+      context.bind_texture(0, "colour");
+      down.set("fine_size", glm::vec2(context.width, context.height));
+      down.set("level", 0.0f);
+    } else {
+      context.bind_texture(0, "bloom");
+      down.set("fine_size", glm::vec2(level_size(pyramid, level - 1)));
+      down.set("level", static_cast<float>(level - 1));
+    }
+    down.set("size", size);
+    context.bind_image(0, "bloom", GL_WRITE_ONLY, level);
+    down.dispatch(size.x, size.y);
+    glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
+  }
+  const Program& up = context.program("up");
+  up.use();
+  up.set("share", std::clamp(context.parameter("spread"), 0.0f, 1.0f));
+  context.bind_texture(0, "bloom");
+  for (int level = levels - 2; level >= 0; --level) {
+    const glm::ivec2 size = level_size(pyramid, level);
+    up.set("coarse_size", glm::vec2(level_size(pyramid, level + 1)));
+    up.set("level", static_cast<float>(level + 1));
+    up.set("size", size);
+    context.bind_image(0, "bloom", GL_READ_WRITE, level);
+    up.dispatch(size.x, size.y);
+    glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
+  }
+}
+
+void map_tones(PassContext& context, std::string_view target) {
+  const bool bloom = context.has("bloom");
+  const Program& program = context.program(bloom ? "bloom" : "plain");
+  program.use();
+  program.set("bloom_strength", std::clamp(context.frame.camera.bloom, 0.0f, 1.0f));
+  context.bind_texture(0, "colour");
+  if (bloom) context.bind_texture(1, "bloom");
+  context.bind_image(0, target, GL_WRITE_ONLY);
+  program.dispatch(context.width, context.height);
+}
+
+PassOffer tonemap(std::string name, std::string meaning, std::string target, std::vector<std::string> defines) {
+  const std::vector<std::string> files{"systems/image/tonemap.comp.glsl"};
+  std::vector<std::string> with_bloom = defines;
+  with_bloom.push_back("BLOOM");
+  return {std::move(name),
+          std::move(meaning),
+          {{"colour", SlotAccess::read}, {"bloom", SlotAccess::read, true}, {target, SlotAccess::write}},
+          {},
+          {{"plain", {files, defines}}, {"bloom", {files, with_bloom}}},
+          {},
+          [target](PassContext& context) { map_tones(context, target); }};
+}
+
+void antialias(PassContext& context) {
+  const Program& program = context.program("antialias");
+  program.use();
+  program.set("least_contrast", context.parameter("least_contrast"));
+  program.set("relative_contrast", context.parameter("relative_contrast"));
+  program.set("softening", context.parameter("softening"));
+  context.bind_texture(0, "display");
+  context.bind_image(0, "picture", GL_WRITE_ONLY);
+  program.dispatch(context.width, context.height);
+}
+
+}  // namespace
+
+std::vector<PassOffer> image_passes() {
+  std::vector<PassOffer> offers;
+  offers.push_back({"bloom",
+                    "light that the lens scatters, as a sum of Gaussians",
+                    {{"colour", SlotAccess::read}, {"bloom", SlotAccess::write}},
+                    {{"spread", 0.6}},  // share of each coarser level
+                    {{"down", {{"systems/image/bloom_down.comp.glsl"}, {}}},
+                     {"up", {{"systems/image/bloom_up.comp.glsl"}, {}}}},
+                    [](const Frame& frame) { return frame.camera.bloom > 0.0f; },
+                    blur});
+  offers.push_back(tonemap("tonemap", "exposure and film curve", "display", {}));
+  offers.push_back(tonemap("tonemap8", "exposure, film curve and dither to 8 bits", "picture", {"FINAL"}));
+  offers.push_back({"antialias",
+                    "smooths edges and dithers to 8 bits",
+                    {{"display", SlotAccess::read}, {"picture", SlotAccess::write}},
+                    {{"least_contrast", 0.03}, {"relative_contrast", 0.12}, {"softening", 0.7}},
+                    {{"antialias", {{"systems/image/antialias.comp.glsl"}, {}}}},
+                    {},
+                    antialias});
+  return offers;
+}
+
+}  // namespace petrichor

@@ -1,0 +1,140 @@
+#include "systems/lighting/passes.hpp"
+
+#include <string>
+
+#include "systems/gpu_scene.hpp"
+#include "systems/lighting/chosen_lights.hpp"
+#include "systems/lighting/state.hpp"
+
+namespace petrichor {
+namespace {
+
+using State = std::shared_ptr<LightingState>;
+
+// Units of the shaders here (gbuffer.glsl takes 0 to 3).
+constexpr int light_lists_unit = 4, shadow_unit = 6, environment_unit = 7;
+
+void bind_gbuffer(PassContext& context) {
+  context.bind_texture(0, "depth");
+  context.bind_texture(1, "albedo");
+  context.bind_texture(2, "normal");
+  context.bind_texture(3, "emissive");
+}
+
+// The slots of the atlas hold only while somebody drew it this frame.
+std::span<const int> shadow_slots(const LightingState& state, const PassContext& context) {
+  return context.has("shadow_atlas") ? std::span<const int>(state.shadows.slots) : std::span<const int>();
+}
+
+PassOffer shadow_maps(State state) {
+  return {"shadow_maps",
+          "octahedral variance shadow maps of the lights that cast shadows, kept while nothing moves",
+          {{"shadow_atlas", SlotAccess::write}},
+          {},
+          {{"depth", {{"systems/geometry/depth.vert.glsl", "systems/geometry/depth.frag.glsl"}, {}}},
+           {"moments", {{"systems/lighting/shadow_moments.comp.glsl"}, {}}}},
+          [](const Frame& frame) { return frame.scene && !shadow_casters(frame).empty(); },
+          [state](PassContext& context) {
+            update_shadow_maps(state->shadows, context.frame, context.texture("shadow_atlas"),
+                               context.fresh("shadow_atlas"), context.program("depth"), context.program("moments"));
+          }};
+}
+
+PassOffer environment(State state) {
+  return {"environment",
+          "the surroundings captured near the camera: light from all round, diffuse and mirrored",
+          {{"environment", SlotAccess::write}, {"shadow_atlas", SlotAccess::read, true}},
+          {{"spacing_m", 6.0}},
+          {{"surfaces",
+            {{"systems/geometry/gbuffer.vert.glsl", "systems/geometry/gbuffer.frag.glsl"},
+             {"MATERIAL_VARIANT " + std::to_string(static_cast<unsigned>(variant_general))}}},
+           {"light", {{"systems/lighting/environment_light.comp.glsl"}, {}}},
+           {"light_shadows", {{"systems/lighting/environment_light.comp.glsl"}, {"SHADOWS"}}},
+           {"filter", {{"systems/lighting/environment_filter.comp.glsl"}, {}}},
+           {"harmonics", {{"systems/lighting/environment_sh.comp.glsl"}, {}}},
+           {"blend", {{"systems/lighting/environment_blend.comp.glsl"}, {}}}},
+          {},
+          [state](PassContext& context) {
+            const bool shadows = context.has("shadow_atlas");
+            const EnvironmentPrograms programs{context.program("surfaces"),
+                                               context.program(shadows ? "light_shadows" : "light"),
+                                               context.program("filter"), context.program("harmonics"),
+                                               context.program("blend")};
+            update_environment(state->environment, context.frame, context.parameter("spacing_m"),
+                               shadows ? &context.texture("shadow_atlas") : nullptr, shadow_slots(*state, context),
+                               programs, context.texture("environment"));
+          }};
+}
+
+PassOffer light_lists(State state) {
+  return {"light_lists",
+          "which lights matter in each tile of 8x8 pixels",
+          {{"depth", SlotAccess::read},
+           {"normal", SlotAccess::read},
+           {"shadow_atlas", SlotAccess::read, true},
+           {"light_lists", SlotAccess::write}},
+          {{"threshold", 0.0015}},  // of a white pixel
+          {{"lists", {{"systems/lighting/light_lists.comp.glsl"}, {}}}},
+          {},
+          [state](PassContext& context) {
+            const ChosenLights chosen = choose_lights(context.frame, shadow_slots(*state, context));
+            upload(state->chosen_lights, &chosen, sizeof chosen);
+            glBindBufferBase(GL_UNIFORM_BUFFER, CHOSEN_LIGHTS_BINDING, state->chosen_lights.id);
+            const Program& lists = context.program("lists");
+            lists.use();
+            lists.set("threshold", context.parameter("threshold"));
+            context.bind_texture(0, "depth");
+            context.bind_texture(2, "normal");
+            context.bind_image(0, "light_lists", GL_WRITE_ONLY);
+            lists.dispatch((context.width + LIGHT_TILE - 1) / LIGHT_TILE, (context.height + LIGHT_TILE - 1) / LIGHT_TILE);
+          }};
+}
+
+PassOffer shade() {
+  const std::vector<std::string> files{"systems/lighting/shade.comp.glsl"};
+  return {"shade",
+          "lamps, surroundings and own light on every surface, cd/m2",
+          {{"depth", SlotAccess::read},
+           {"albedo", SlotAccess::read},
+           {"normal", SlotAccess::read},
+           {"emissive", SlotAccess::read},
+           {"light_lists", SlotAccess::read},
+           {"shadow_atlas", SlotAccess::read, true},
+           {"environment", SlotAccess::read, true},
+           {"colour", SlotAccess::write}},
+          {{"diffuse_gain", 1.0}},
+          {{"plain", {files, {}}},
+           {"shadows", {files, {"SHADOWS"}}},
+           {"environment", {files, {"ENVIRONMENT"}}},
+           {"shadows_environment", {files, {"SHADOWS", "ENVIRONMENT"}}}},
+          {},
+          [](PassContext& context) {
+            const bool shadows = context.has("shadow_atlas"), environment = context.has("environment");
+            const Program& program = context.program(shadows && environment ? "shadows_environment"
+                                                     : shadows              ? "shadows"
+                                                     : environment          ? "environment"
+                                                                            : "plain");
+            program.use();
+            program.set("diffuse_gain", context.parameter("diffuse_gain"));
+            bind_gbuffer(context);
+            context.bind_texture(light_lists_unit, "light_lists");
+            if (shadows) context.bind_texture(shadow_unit, "shadow_atlas");
+            if (environment) context.bind_texture(environment_unit, "environment");
+            context.bind_image(0, "colour", GL_WRITE_ONLY);
+            program.dispatch(context.width, context.height);
+          }};
+}
+
+}  // namespace
+
+std::vector<PassOffer> lighting_passes(std::shared_ptr<LightingState> state) {
+  if (!state) state = std::make_shared<LightingState>();
+  std::vector<PassOffer> offers;
+  offers.push_back(shadow_maps(state));
+  offers.push_back(environment(state));
+  offers.push_back(light_lists(state));
+  offers.push_back(shade());
+  return offers;
+}
+
+}  // namespace petrichor

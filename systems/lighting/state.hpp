@@ -1,0 +1,16 @@
+#pragma once
+// What the passes of light keep on the GPU.
+
+#include "engine/gpu/objects.hpp"
+#include "systems/lighting/environment.hpp"
+#include "systems/lighting/shadow_maps.hpp"
+
+namespace petrichor {
+
+struct LightingState {
+  ShadowMaps shadows;
+  Environment environment;
+  Buffer chosen_lights;
+};
+
+}  // namespace petrichor
