@@ -1,0 +1,104 @@
+#include "content/city/scene.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace petrichor::city {
+
+glm::vec3 emission_cd_m2(Glow glow) {
+  switch (glow) {
+    case Glow::sodium: return {6500.0f, 3350.0f, 1050.0f};
+    case Glow::white: return {4600.0f, 4300.0f, 3700.0f};
+    case Glow::candle: return {1700.0f, 850.0f, 260.0f};
+    case Glow::neon_red: return {900.0f, 60.0f, 25.0f};
+    case Glow::neon_pink: return {850.0f, 110.0f, 360.0f};
+    case Glow::neon_blue: return {70.0f, 160.0f, 950.0f};
+    case Glow::neon_cyan: return {60.0f, 620.0f, 700.0f};
+    case Glow::neon_green: return {60.0f, 640.0f, 140.0f};
+    case Glow::neon_amber: return {900.0f, 330.0f, 40.0f};
+    case Glow::signal_red: return {2200.0f, 70.0f, 30.0f};
+    case Glow::signal_green: return {60.0f, 1700.0f, 700.0f};
+    case Glow::headlight: return {7600.0f, 6700.0f, 5200.0f};
+    case Glow::taillight: return {700.0f, 22.0f, 12.0f};
+    case Glow::clock: return {150.0f, 125.0f, 75.0f};
+    case Glow::shop: return {520.0f, 360.0f, 190.0f};
+    case Glow::strip: return {1500.0f, 1550.0f, 1500.0f};
+    case Glow::count: break;
+  }
+  return glm::vec3(0.0f);
+}
+
+glm::vec2 roughness_metalness(Finish finish) {
+  switch (finish) {
+    case Finish::matte: return {0.72f, 0.0f};
+    case Finish::paint: return {0.38f, 0.0f};
+    case Finish::gloss: return {0.12f, 0.0f};
+    case Finish::wet_stone: return {0.30f, 0.0f};
+    case Finish::rubber: return {0.55f, 0.0f};
+    case Finish::iron: return {0.36f, 0.85f};
+    case Finish::steel: return {0.28f, 1.0f};
+    case Finish::chrome: return {0.09f, 1.0f};
+    case Finish::brass: return {0.22f, 1.0f};
+    case Finish::count: break;
+  }
+  return {1.0f, 0.0f};
+}
+
+glm::vec2 texture_metres(Mat mat) {
+  switch (mat) {
+    case Mat::stucco: return {3.2f, 3.2f};
+    case Mat::brick: return {2.0f, 1.95f};
+    case Mat::ashlar: return {2.4f, 2.4f};
+    case Mat::tiles: return {2.0f, 2.0f};
+    case Mat::asphalt: return {5.0f, 10.0f};
+    case Mat::setts: return {3.0f, 3.0f};
+    case Mat::slabs: return {4.0f, 4.0f};
+    default: return {1.0f, 1.0f};
+  }
+}
+
+bool has_normal_map(Mat mat) {
+  switch (mat) {
+    case Mat::stucco:
+    case Mat::brick:
+    case Mat::ashlar:
+    case Mat::tiles:
+    case Mat::asphalt:
+    case Mat::setts:
+    case Mat::slabs:
+    case Mat::ironwork: return true;
+    default: return false;
+  }
+}
+
+int Scene::group(const std::string& name) {
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    if (nodes[i].parent < 0 && nodes[i].name == name) return static_cast<int>(i);
+  }
+  Node node;
+  node.name = name;
+  return add(std::move(node));
+}
+
+int Scene::add(Node node) {
+  nodes.push_back(std::move(node));
+  return static_cast<int>(nodes.size()) - 1;
+}
+
+int Scene::add_mesh(Mesh mesh) {
+  meshes.push_back(std::move(mesh));
+  return static_cast<int>(meshes.size()) - 1;
+}
+
+std::size_t triangle_count(const Scene& scene) {
+  std::size_t count = 0;
+  for (const Node& node : scene.nodes) {
+    if (node.mesh < 0) continue;
+    for (const auto& [mat, primitive] : scene.meshes[static_cast<std::size_t>(node.mesh)].primitives) {
+      count += primitive.indices.size() / 3;
+    }
+  }
+  return count;
+}
+
+}  // namespace petrichor::city
