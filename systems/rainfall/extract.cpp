@@ -1,0 +1,132 @@
+#include "systems/rainfall/extract.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "systems/rainfall/drop_physics.hpp"
+#include "systems/rainfall/layers.hpp"
+
+namespace petrichor {
+namespace {
+
+// The fade is the last fifth of the drawn distance.
+constexpr double fade_share = 0.8;
+
+double frustum_solid_angle(const FrameCamera& camera, int width, int height) {
+  const double a = std::tan(0.5 * camera.vertical_fov_rad), b = a * width / std::max(height, 1);
+  return 4.0 * std::asin(a * b / std::sqrt((1.0 + a * a) * (1.0 + b * b)));
+}
+
+// Shrinks the distance until drops and candidate cells fit the budget.
+void fit_distance(FrameRain& rain, double drops_per_m3, const FrameCamera& camera, int width, int height) {
+  const double solid_angle = frustum_solid_angle(camera, width, height);
+  // Integral of r^2 times a fade that is linear from fade_share to 1, times the solid angle, at distance 1.
+  const double volume = solid_angle * (1.0 - std::pow(fade_share, 4)) / (12.0 * (1.0 - fade_share));
+  double distance = std::max(0.0f, rain.asked_distance_m);
+  const double per_cubic_metre = drops_per_m3 * volume;
+  const double most = std::max(0, rain.maximum_drops);
+  if (per_cubic_metre * distance * distance * distance > most) distance = std::cbrt(most / per_cubic_metre);
+  // A narrow view askew to the axes has few drops in a large box of cells: those cost too.
+  for (int i = 0; i < 200 && distance > 0.0; ++i) {
+    if (candidate_cells(rain, camera, width, height, static_cast<float>(distance)) <= 1.0e6 + most) break;
+    distance *= 0.95;
+  }
+  rain.drawn_distance_m = static_cast<float>(distance);
+  rain.fade_start_m = static_cast<float>(fade_share * distance);
+  rain.expected_drops = static_cast<float>(per_cubic_metre * distance * distance * distance);
+}
+
+std::vector<double> response_times(const std::vector<DropClass>& classes) {
+  std::vector<double> times;
+  for (const DropClass& c : classes) times.push_back(wind_response_s(c.fall_speed_mps));
+  return times;
+}
+
+}  // namespace
+
+WindMotion start_rain_motion(const Emitter& emitter, const Wind& wind) {
+  return start_wind_motion(wind, response_times(make_drop_classes(emitter)));
+}
+
+FrameRain make_frame_rain(const Emitter& emitter, const WindMotion& motion, const FrameCamera& camera, int width,
+                          int height, double time_s) {
+  FrameRain rain;
+  rain.rain_mm_per_hour = emitter.rain_mm_per_hour;
+  rain.seed = emitter.seed;
+  rain.asked_distance_m = emitter.drawn_distance_m;
+  rain.maximum_drops = emitter.maximum_drops;
+  const auto classes = make_drop_classes(emitter);
+  double drawn_per_m3 = 0.0, extinction = 0.0, drawn_extinction = 0.0, water = 0.0;
+  glm::dvec3 momentum(0.0);
+  for (std::size_t k = 0; k < classes.size(); ++k) {
+    const DropClass& c = classes[k];
+    const Drift drift = drift_at(motion, k, time_s);
+    const glm::dvec3 fall(0.0, -c.fall_speed_mps, 0.0);
+    rain.classes.push_back({static_cast<float>(c.diameter_mm), static_cast<float>(c.fall_speed_mps),
+                            static_cast<float>(c.drops_per_m3), static_cast<float>(c.base_drops_per_m3), c.drawn,
+                            drift.displacement_m + fall * time_s, glm::vec3(drift.velocity_mps + fall)});
+    extinction += petrichor::extinction_per_m(c);
+    const double water_here = petrichor::rain_mm_per_hour(c);
+    water += water_here;
+    momentum += water_here * (drift.velocity_mps + fall);
+    if (!c.drawn) continue;
+    drawn_per_m3 += c.drops_per_m3;
+    drawn_extinction += petrichor::extinction_per_m(c);
+  }
+  rain.extinction_per_m = static_cast<float>(extinction);
+  rain.drawn_extinction_per_m = static_cast<float>(drawn_extinction);
+  rain.mean_velocity_mps = water > 0.0 ? glm::vec3(momentum / water) : glm::vec3(0.0f, -1.0f, 0.0f);
+  fit_distance(rain, drawn_per_m3, camera, width, height);
+  return rain;
+}
+
+void simulate_rainfall(Registry& registry, double time_s) {
+  Entity entity{};
+  const Emitter* emitter = nullptr;
+  registry.view<Emitter>().each([&](Entity e, const Emitter& found) {
+    if (!emitter || entity_index(e) < entity_index(entity)) entity = e, emitter = &found;
+  });
+  if (!emitter) return;
+  Entity first{};
+  Wind wind;
+  bool any = false;
+  registry.view<Wind>().each([&](Entity e, const Wind& found) {
+    if (!any || entity_index(e) < entity_index(first)) first = e, wind = found, any = true;
+  });
+  RainMotion* motion = registry.find<RainMotion>(entity);
+  const bool other_classes = motion && (motion->minimum_diameter_mm != emitter->minimum_diameter_mm ||
+                                        motion->maximum_diameter_mm != emitter->maximum_diameter_mm);
+  if (!motion || other_classes) {
+    RainMotion fresh{emitter->minimum_diameter_mm, emitter->maximum_diameter_mm, start_rain_motion(*emitter, wind)};
+    if (motion) *motion = std::move(fresh);
+    else registry.emplace<RainMotion>(entity, std::move(fresh));
+    return;
+  }
+  follow_wind(motion->wind, wind, time_s);
+}
+
+void extract_rainfall(const Registry& registry, Frame& frame, double time_s) {
+  frame.rain.reset();
+  Entity entity{};
+  const Emitter* emitter = nullptr;
+  registry.view<Emitter>().each([&](Entity e, const Emitter& found) {
+    if (!emitter || entity_index(e) < entity_index(entity)) entity = e, emitter = &found;
+  });
+  if (!emitter || !(emitter->rain_mm_per_hour > 0.0f)) return;
+  const RainMotion* motion = registry.find<RainMotion>(entity);
+  const bool usable = motion && motion->minimum_diameter_mm == emitter->minimum_diameter_mm &&
+                      motion->maximum_diameter_mm == emitter->maximum_diameter_mm;
+  // Before the first tick: the steady motion.
+  Wind wind;
+  if (!usable) {
+    Entity first{};
+    bool any = false;
+    registry.view<Wind>().each([&](Entity e, const Wind& found) {
+      if (!any || entity_index(e) < entity_index(first)) first = e, wind = found, any = true;
+    });
+  }
+  frame.rain = make_frame_rain(*emitter, usable ? motion->wind : start_rain_motion(*emitter, wind), frame.camera,
+                               frame.width, frame.height, time_s);
+}
+
+}  // namespace petrichor

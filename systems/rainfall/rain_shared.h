@@ -1,0 +1,54 @@
+// Structs that the rain's C++ and GLSL share (std430).
+#ifndef PETRICHOR_RAIN_SHARED_H
+#define PETRICHOR_RAIN_SHARED_H
+
+#ifdef __cplusplus
+#include <glm/glm.hpp>
+namespace petrichor {
+using glm::ivec4;
+using glm::uvec4;
+using glm::vec4;
+#endif
+
+#define RAIN_LAYERS_BINDING 2
+#define RAIN_CELLS_BINDING 3
+#define RAIN_COMMAND_BINDING 4
+#define RAIN_OPTICAL_DEPTH_BINDING 5
+#define RAIN_RADIANCE_BINDING 6
+#define RAIN_OPTICS_BINDING 7
+
+#define RAIN_LANES 32            // invocations that share a cell
+#define RAIN_SPLAT_GROUP 64
+#define RAIN_COMMAND_WIDTH 256   // work groups along x of the indirect dispatch
+#define RAIN_CELL_LIGHTS 8
+#define RAIN_PHASE_BINS 256
+#define RAIN_AMBIENT_BINS 64
+
+// Sums in 32-bit fixed point. Optical depth: 1 is 2^16, so a pixel holds 65,536 opaque e-folds. Radiance times
+// optical depth, in output units (1 is white): 1 is 2^14, so a pixel holds 262,144 times white.
+#define RAIN_DEPTH_ONE 65536.0
+#define RAIN_RADIANCE_ONE 16384.0
+#define RAIN_RADIANCE_MOST 2048.0  // a single drop is clamped here
+
+// One layer of one class: a box of cells that may be seen.
+struct RainLayerGpu {
+  vec4 corner_edge;        // xyz: lowest corner of the box, relative to the camera, m; w: edge of a cell, m
+  ivec4 first_cell;        // xyz: index of that cell in the class's frame; w: class << 8 | layer
+  uvec4 box;               // cells along x, y and z; w: number of cells in the boxes before this one
+  vec4 velocity_diameter;  // m/s; w: m
+  vec4 expected;           // x: mean drops in a cell now, y: exp(-x)
+};
+
+// A cell that is seen and holds drops.
+struct RainCellGpu {
+  vec4 corner_edge;
+  uvec4 key;     // of its drops; w: count << 16 | number of lights << 12 | layer
+  uvec4 lights;  // RAIN_CELL_LIGHTS indices of 16 bits
+};
+
+#ifdef __cplusplus
+static_assert(sizeof(RainLayerGpu) == 80);
+static_assert(sizeof(RainCellGpu) == 48);
+}  // namespace petrichor
+#endif
+#endif

@@ -1,0 +1,122 @@
+#include "systems/rainfall/stage.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include "systems/rainfall/drop_optics.hpp"
+#include "systems/rainfall/passes.hpp"
+
+namespace petrichor {
+namespace {
+
+PassOffer backdrop_offer(const StageSet& set) {
+  PassOffer offer;
+  offer.name = "stage_backdrop";
+  offer.meaning = "an even wall";
+  offer.slots = {{"colour", SlotAccess::write}, {"depth", SlotAccess::write, true}};
+  offer.shaders = {{"backdrop", {{"systems/rainfall/stage_backdrop.comp.glsl"}, {}}}};
+  offer.execute = [set](PassContext& context) {
+    const Program& program = context.program("backdrop");
+    program.use();
+    program.set("wall", set.wall_cd_m2);
+    program.set("wall_distance_m", set.wall_distance_m);
+    program.set("around", context.frame.sky.horizon_cd_m2);  // drops under an even sky show nothing else
+    context.bind_image(0, "colour", GL_WRITE_ONLY);
+    program.dispatch(context.width, context.height);
+    if (set.wall_hides) {
+      const float depth = context.frame.camera.near_m / set.wall_distance_m;
+      glClearTexImage(context.texture("depth").id, 0, GL_DEPTH_COMPONENT, GL_FLOAT, &depth);
+    }
+  };
+  return offer;
+}
+
+PassOffer present_offer() {
+  PassOffer offer;
+  offer.name = "stage_present";
+  offer.meaning = "linear light to 8 bits";
+  offer.slots = {{"colour", SlotAccess::read}, {"picture", SlotAccess::write}};
+  offer.shaders = {{"present", {{"systems/rainfall/stage_present.comp.glsl"}, {}}}};
+  offer.execute = [](PassContext& context) {
+    const Program& program = context.program("present");
+    program.use();
+    context.bind_texture(0, "colour");
+    context.bind_image(0, "picture", GL_WRITE_ONLY);
+    program.dispatch(context.width, context.height);
+  };
+  return offer;
+}
+
+}  // namespace
+
+Result<std::unique_ptr<RainStage>> RainStage::make(bool software_gl, const StageSet& set) {
+  std::unique_ptr<RainStage> stage(new RainStage(software_gl, set));
+  if (auto loaded = stage->load(); !loaded) return tl::unexpected(loaded.error());
+  return stage;
+}
+
+Result<void> RainStage::load() {
+  std::vector<PassOffer> offers = rainfall_passes();
+  offers.push_back(backdrop_offer(set_));
+  offers.push_back(present_offer());
+  graph_ = std::make_unique<Graph>(library_, std::move(offers));
+  using Json = nlohmann::json;
+  Json table;
+  table["resources"]["colour"] = {{"format", "rgba16f"}};
+  Json backdrop = {{"pass", "stage_backdrop"}, {"colour", "colour"}};
+  Json splat = {{"pass", "rain_splat"}};
+  if (set_.wall_hides) {
+    table["resources"]["depth"] = {{"format", "depth32f"}};
+    backdrop["depth"] = "depth";
+    splat["depth"] = "depth";
+  }
+  table["passes"] = Json::array({backdrop});
+  if (set_.draw_rain) {
+    table["passes"].push_back({{"pass", "rain_cells"}});
+    table["passes"].push_back(splat);
+    table["passes"].push_back({{"pass", "rain_composite"}, {"colour", "colour"}});
+  }
+  table["output"] = "colour";
+  if (set_.present) {
+    table["resources"]["picture"] = {{"format", "rgba8"}};
+    table["passes"].push_back({{"pass", "stage_present"}, {"colour", "colour"}, {"picture", "picture"}});
+    table["output"] = "picture";
+  }
+  return graph_->load_table(table, "the bare stage");
+}
+
+Result<void> RainStage::draw(Frame& frame) {
+  finish_frame(frame);
+  if (frame.rain) frame.uniforms.rain = rain_uniform(*frame.rain);
+  frame_gpu_.upload(frame);
+  auto output = graph_->execute(frame, frame.width, frame.height, timer_);
+  if (!output) return tl::unexpected(output.error());
+  output_ = *output;
+  return {};
+}
+
+std::vector<float> RainStage::read_light() const {
+  const Texture* texture = output_;
+  std::vector<float> pixels(std::size_t(texture->width) * texture->height * 4);
+  glMemoryBarrier(GL_TEXTURE_UPDATE_BARRIER_BIT);
+  glGetTextureImage(texture->id, 0, GL_RGBA, GL_FLOAT, static_cast<GLsizei>(pixels.size() * sizeof(float)), pixels.data());
+  return pixels;
+}
+
+std::vector<unsigned char> RainStage::read_picture() const {
+  std::vector<unsigned char> pixels(std::size_t(output_->width) * output_->height * 4);
+  glMemoryBarrier(GL_TEXTURE_UPDATE_BARRIER_BIT);
+  glGetTextureImage(output_->id, 0, GL_RGBA, GL_UNSIGNED_BYTE, static_cast<GLsizei>(pixels.size()), pixels.data());
+  return pixels;
+}
+
+Frame stage_frame(int width, int height, const glm::dvec3& camera_m) {
+  Frame frame;
+  frame.width = width;
+  frame.height = height;
+  frame.camera.position_m = camera_m;
+  frame.camera.vertical_fov_rad = glm::radians(60.0f);
+  frame.sky.zenith_cd_m2 = frame.sky.horizon_cd_m2 = glm::vec3(0.02f, 0.022f, 0.03f);
+  return frame;
+}
+
+}  // namespace petrichor
