@@ -10,7 +10,6 @@
 #include <charconv>
 #include <cstdlib>
 #include <cstring>
-#include <map>
 #include <string>
 #include <vector>
 
@@ -19,19 +18,6 @@
 
 namespace petrichor {
 namespace {
-
-// Two contexts may share one display, and eglTerminate would pull it from under the other.
-std::map<EGLDisplay, int>& display_users() {
-  static std::map<EGLDisplay, int> users;
-  return users;
-}
-
-void release_display(EGLDisplay display) {
-  if (--display_users()[display] == 0) {
-    display_users().erase(display);
-    eglTerminate(display);
-  }
-}
 
 const char* egl_error_name(EGLint error) {
   switch (error) {
@@ -103,7 +89,7 @@ class HeadlessContext final : public Context {
     }
     if (surface_ != EGL_NO_SURFACE) eglDestroySurface(display_, surface_);
     eglDestroyContext(display_, context_);
-    release_display(display_);
+    // The display stays: another context may share it, and eglTerminate unloads drivers that do not clean up.
   }
   DeviceInfo device() const override { return info_; }
   bool has_window() const override { return false; }
@@ -154,26 +140,21 @@ Result<std::unique_ptr<HeadlessContext>> try_candidate(const Candidate& candidat
   if (!eglInitialize(display, &major, &minor)) {
     return failure(fmt::format("cannot be opened ({})", egl_error_name(eglGetError())));
   }
-  ++display_users()[display];
-  auto give_up = [&](std::string why) {
-    release_display(display);
-    return failure(std::move(why));
-  };
   const char* vendor = eglQueryString(display, EGL_VENDOR);
   const std::string who = fmt::format("EGL {}.{}, {}", major, minor, vendor ? vendor : "unknown vendor");
-  if (!eglBindAPI(EGL_OPENGL_API)) return give_up(who + ": has no desktop OpenGL");
+  if (!eglBindAPI(EGL_OPENGL_API)) return failure(who + ": has no desktop OpenGL");
 
   const EGLint config_attributes[] = {EGL_SURFACE_TYPE, EGL_PBUFFER_BIT, EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT, EGL_NONE};
   EGLConfig config = nullptr;
   EGLint configs = 0;
   if (!eglChooseConfig(display, config_attributes, &config, 1, &configs) || configs == 0) {
     if (!epoxy_has_egl_extension(display, "EGL_KHR_no_config_context")) {
-      return give_up(who + ": has no configuration for OpenGL");
+      return failure(who + ": has no configuration for OpenGL");
     }
     config = EGL_NO_CONFIG_KHR;
   }
   EGLContext context = create_gl_context(display, config, 4, 5, debug);
-  if (context == EGL_NO_CONTEXT) return give_up(fmt::format("{}: {}", who, best_version(display, config)));
+  if (context == EGL_NO_CONTEXT) return failure(fmt::format("{}: {}", who, best_version(display, config)));
 
   EGLSurface surface = EGL_NO_SURFACE;
   bool current = epoxy_has_egl_extension(display, "EGL_KHR_surfaceless_context") &&
@@ -187,7 +168,7 @@ Result<std::unique_ptr<HeadlessContext>> try_candidate(const Candidate& candidat
     const EGLint error = eglGetError();
     if (surface != EGL_NO_SURFACE) eglDestroySurface(display, surface);
     eglDestroyContext(display, context);
-    return give_up(fmt::format("{}: the context cannot be made current ({})", who, egl_error_name(error)));
+    return failure(fmt::format("{}: the context cannot be made current ({})", who, egl_error_name(error)));
   }
   auto result = std::make_unique<HeadlessContext>(display, surface, context);
   result->remember_device();
