@@ -106,15 +106,18 @@ Result<void> Timeline::advance(double time_s) {
       dispatch_pending();
       continue;
     }
-    if (due_.empty() || due_.begin()->first > time_s) break;
+    if (due_.empty() || due_.begin()->first > time_s) {
+      // A track that fails here wakes its task at once.
+      apply_tracks(now_s_ = time_s);
+      if (due_.empty() || due_.begin()->first > time_s) break;
+    }
     const auto [wake_s, id] = *due_.begin();
     due_.erase(due_.begin());
     now_s_ = std::max(now_s_, wake_s);
     apply_tracks(now_s_);
     resume(id);
   }
-  now_s_ = time_s;
-  apply_tracks(time_s);
+  if (sandbox_.killed) apply_tracks(now_s_ = time_s);
   if (errors_.empty()) return {};
   std::string all;
   for (std::size_t i = 0; i < std::min<std::size_t>(errors_.size(), 5); ++i) all += (i ? "\n" : "") + errors_[i];
