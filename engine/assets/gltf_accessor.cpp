@@ -15,7 +15,7 @@ namespace {
 using nlohmann::json;
 
 // Accessors without data are backed by nothing that bounds their count, so this does.
-constexpr std::uint64_t maximum_zero_elements = 1u << 24;
+constexpr std::uint64_t maximum_zero_elements = 1u << 22;
 constexpr std::uint64_t maximum_dense_bytes = 1u << 30;
 
 std::uint64_t size_of(ComponentType type) {
@@ -209,9 +209,12 @@ AccessorView open_accessor(Document& document, int index) {
     view.data =
         range(document, accessor.bufferView, accessor.byteOffset, view.stride_bytes, view.count, element, view.path)
             .data();
-  } else if (view.count > maximum_zero_elements) {
-    gltf_fail(view.path + "/count",
-              fmt::format("{} elements without a bufferView, at most {} are read", view.count, maximum_zero_elements));
+  } else {
+    document.zero_elements += view.count;
+    if (view.count > maximum_zero_elements || document.zero_elements > maximum_zero_elements) {
+      gltf_fail(view.path + "/count", fmt::format("{} elements without a bufferView; the whole model may use {}",
+                                                  view.count, maximum_zero_elements));
+    }
   }
   if (!accessor.sparse.isSparse) return view;
   apply_sparse(document, accessor, view, element);

@@ -249,9 +249,9 @@ std::span<const std::uint8_t> bytes_of_view(const Document& document, int index)
 
 void check_extensions(Document& document) {
   // Not here though often met: Draco and meshopt compression, Basis textures. They need decoders of their own.
-  static const std::set<std::string> supported{"KHR_lights_punctual",   "KHR_materials_emissive_strength",
-                                               "KHR_texture_transform", "KHR_mesh_quantization",
-                                               "KHR_materials_unlit",   "EXT_texture_webp"};
+  static const std::set<std::string> supported{
+      "KHR_lights_punctual", "KHR_materials_emissive_strength",     "KHR_texture_transform", "KHR_mesh_quantization",
+      "KHR_materials_unlit", "KHR_materials_pbrSpecularGlossiness", "EXT_texture_webp"};
   const auto each = [&](const char* name, auto&& use) {
     if (!document.json->contains(name)) return;
     const json& list = (*document.json)[name];

@@ -46,7 +46,8 @@ struct Document {
   std::map<int, std::unique_ptr<AccessorView>> sparse_accessors;
   std::uint64_t vertex_count = 0;  // of the whole model, against the caps
   std::uint64_t index_count = 0;
-  std::uint64_t dense_bytes = 0;  // of sparse_accessors
+  std::uint64_t zero_elements = 0;  // read from accessors that have no data
+  std::uint64_t dense_bytes = 0;    // of sparse_accessors
 
   void warn(const std::string& path, const std::string& message);
   std::vector<std::string> warnings;

@@ -120,6 +120,19 @@ Material convert_material(Document& document, std::size_t index) {
       convert_texture(document, member(surface, "baseColorTexture"), path + "/pbrMetallicRoughness/baseColorTexture");
   out.metallic_roughness_texture = convert_texture(document, member(surface, "metallicRoughnessTexture"),
                                                    path + "/pbrMetallicRoughness/metallicRoughnessTexture");
+  if (const json& old = extension(raw, "KHR_materials_pbrSpecularGlossiness"); old.is_object()) {
+    // Of old exporters. What is metal cannot be told from it cheaply; buildings seldom are.
+    const json& diffuse = member(old, "diffuseFactor");
+    for (int c = 0; c < 4; ++c) {
+      out.base_colour[c] = diffuse.is_array() ? diffuse[static_cast<std::size_t>(c)].get<float>() : 1.0f;
+    }
+    const json& glossiness = member(old, "glossinessFactor");
+    out.roughness = 1.0f - (glossiness.is_number() ? glossiness.get<float>() : 1.0f);
+    out.metallic = 0.0f;
+    out.metallic_roughness_texture = {};
+    out.base_colour_texture = convert_texture(document, member(old, "diffuseTexture"),
+                                              path + "/extensions/KHR_materials_pbrSpecularGlossiness/diffuseTexture");
+  }
   out.normal_texture = convert_texture(document, member(raw, "normalTexture"), path + "/normalTexture");
   out.occlusion_texture = convert_texture(document, member(raw, "occlusionTexture"), path + "/occlusionTexture");
   out.emissive_texture = convert_texture(document, member(raw, "emissiveTexture"), path + "/emissiveTexture");
@@ -146,7 +159,8 @@ void convert_images(Document& document, Model& model) {
     if (has_uri && !is_data_uri(images[i]["uri"].get_ref<const std::string&>()))
       name = images[i]["uri"].get<std::string>().substr(0, 200);
     auto decoded = decode_image(bytes, name);
-    if (!decoded) gltf_fail(path, decoded.error().message);
+    if (!decoded)
+      gltf_fail(path, name == path ? decoded.error().message : fmt::format("{}: {}", name, decoded.error().message));
     all_bytes += decoded->pixels.size();
     if (all_bytes > maximum_all_pixel_bytes)
       gltf_fail(path, fmt::format("all images together pass {} bytes", maximum_all_pixel_bytes));

@@ -50,6 +50,8 @@ struct Table {
   std::vector<Member> extensions = {};  // members of "extensions"
 };
 
+// Of one array: each costs up to a kilobyte once parsed, and every node becomes an entity.
+constexpr std::size_t maximum_objects = 1'000'000;
 constexpr double largest_integer = 9007199254740992.0;  // 2^53: exact in a double
 
 Member index(std::string_view name, std::string_view refers, bool required = false) {
@@ -126,11 +128,14 @@ const Table& root_table() {
                                          number("metallicFactor", 0, 1), number("roughnessFactor", 0, 1),
                                          object("metallicRoughnessTexture", texture_info)}};
   static const Table emissive_strength{{number("emissiveStrength", 0)}};
+  static const Table specular_glossiness{
+      {numbers("diffuseFactor", 4, 0), object("diffuseTexture", texture_info), number("glossinessFactor", 0, 1)}};
   static const Table material{
       {text("name"), object("pbrMetallicRoughness", metallic_roughness), object("normalTexture", texture_info),
        object("occlusionTexture", texture_info), object("emissiveTexture", texture_info),
        numbers("emissiveFactor", 3, 0), text("alphaMode"), number("alphaCutoff", 0), boolean("doubleSided")},
-      {object("KHR_materials_emissive_strength", emissive_strength), object("KHR_materials_unlit", anything)}};
+      {object("KHR_materials_emissive_strength", emissive_strength),
+       object("KHR_materials_pbrSpecularGlossiness", specular_glossiness), object("KHR_materials_unlit", anything)}};
   static const Table perspective{{number("aspectRatio", 0), number("yfov", 1e-6, FLT_MAX, true), number("zfar", 0),
                                   number("znear", 1e-12, FLT_MAX, true)}};
   static const Table orthographic{{number("xmag", -FLT_MAX, FLT_MAX, true), number("ymag", -FLT_MAX, FLT_MAX, true),
@@ -237,6 +242,9 @@ class Validator {
         check(value, *member.table, path);
         break;
       case Kind::objects:
+        if (value.is_array() && value.size() > maximum_objects) {
+          gltf_fail(path, fmt::format("{} elements, at most {} are read", value.size(), maximum_objects));
+        }
         each(value, path, [&](json& element, const std::string& at) { check(element, *member.table, at); });
         break;
     }
@@ -256,6 +264,9 @@ class Validator {
       gltf_fail(path, fmt::format("{}, an integer from {:.0f} to {:.0f} is needed", shown(value), minimum, maximum));
     }
     value = static_cast<std::uint64_t>(real);
+    if (path.ends_with("/byteStride") && value.get<std::uint64_t>() % 4 != 0) {
+      gltf_fail(path, fmt::format("{}, a multiple of 4 is needed", shown(value)));
+    }
   }
 
   void check_number(const json& value, const Member& member, const std::string& path) {

@@ -34,6 +34,12 @@ const char* extension_of(std::span<const std::uint8_t> bytes) {
   return nullptr;
 }
 
+std::string one_line(std::string text) {
+  while (!text.empty() && text.back() == '\n') text.pop_back();
+  std::replace(text.begin(), text.end(), '\n', ';');
+  return text;
+}
+
 // For decoders that read files only.
 struct TemporaryFile {
   std::filesystem::path path;
@@ -66,18 +72,17 @@ void spread(std::vector<std::uint8_t>& pixels, const std::vector<T>& read, std::
 Result<Image> read_pixels(OIIO::ImageInput& input, const std::string& name) {
   const OIIO::ImageSpec spec = input.spec();
   if (spec.width <= 0 || spec.height <= 0 || spec.nchannels <= 0 || spec.depth > 1) {
-    return failure(fmt::format("{}: no two-dimensional image", name));
+    return failure("no two-dimensional image");
   }
   if (spec.width > maximum_image_side || spec.height > maximum_image_side) {
-    return failure(fmt::format("{}: {} x {} pixels, at most {} a side are read", name, spec.width, spec.height,
-                               maximum_image_side));
+    return failure(
+        fmt::format("{} x {} pixels, at most {} a side are read", spec.width, spec.height, maximum_image_side));
   }
   const bool is_float = spec.format.is_floating_point();
   const std::uint64_t texels = static_cast<std::uint64_t>(spec.width) * static_cast<std::uint64_t>(spec.height);
   const int channels = std::min(spec.nchannels, 4);
   if (texels * 4 * (is_float ? 4 : 1) > maximum_pixel_bytes) {
-    return failure(
-        fmt::format("{}: {} x {} pixels need more than {} bytes", name, spec.width, spec.height, maximum_pixel_bytes));
+    return failure(fmt::format("{} x {} pixels need more than {} bytes", spec.width, spec.height, maximum_pixel_bytes));
   }
   Image image;
   image.width = spec.width;
@@ -97,7 +102,7 @@ Result<Image> read_pixels(OIIO::ImageInput& input, const std::string& name) {
     done = input.read_image(0, 0, 0, channels, OIIO::TypeDesc::UINT8, read.data());
     spread(image.pixels, read, texels, channels, std::uint8_t{255});
   }
-  if (!done) return failure(fmt::format("{}: the image cannot be decoded: {}", name, input.geterror()));
+  if (!done) return failure(fmt::format("the image cannot be decoded: {}", one_line(input.geterror())));
   return image;
 }
 
@@ -106,8 +111,8 @@ Result<Image> read_pixels(OIIO::ImageInput& input, const std::string& name) {
 Result<Image> decode_image(std::span<const std::uint8_t> bytes, const std::string& name) {
   const char* extension = extension_of(bytes);
   if (extension == nullptr) {
-    return failure(fmt::format("{}: {} bytes that are no image; PNG, JPEG, WebP, BMP, TIFF, HDR and EXR are read", name,
-                               bytes.size()));
+    return failure(
+        fmt::format("{} bytes that are no image; PNG, JPEG, WebP, BMP, TIFF, HDR and EXR are read", bytes.size()));
   }
   OIIO::ImageSpec hints;
   hints.attribute("oiio:UnassociatedAlpha", 1);
@@ -115,7 +120,7 @@ Result<Image> decode_image(std::span<const std::uint8_t> bytes, const std::strin
   std::unique_ptr<TemporaryFile> file;
   auto input = OIIO::ImageInput::create(extension);  // by format, no file is touched
   if (!input)
-    return failure(fmt::format("{}: this OpenImageIO reads no .{} files: {}", name, extension, OIIO::geterror()));
+    return failure(fmt::format("this OpenImageIO reads no .{} files: {}", extension, one_line(OIIO::geterror())));
   OIIO::ImageSpec spec;
   bool opened = false;
   if (input->supports("ioproxy")) {
@@ -125,7 +130,7 @@ Result<Image> decode_image(std::span<const std::uint8_t> bytes, const std::strin
     file = std::make_unique<TemporaryFile>(bytes, extension);
     opened = input->open(file->path.string(), spec, hints);
   }
-  if (!opened) return failure(fmt::format("{}: the image cannot be read: {}", name, input->geterror()));
+  if (!opened) return failure(fmt::format("the image cannot be read: {}", one_line(input->geterror())));
   return read_pixels(*input, name);
 }
 
