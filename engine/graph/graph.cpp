@@ -149,6 +149,16 @@ struct Graph::Impl {
     }
   }
 
+  // An output whose writers all rest shows what the resource is cleared to.
+  void clear_untouched(int storage) {
+    if (storage < 0 || !plan->storages[storage].clear_first) return;
+    for (const PassPlan& pass : plan->passes) {
+      if (std::find(pass.slot_storage.begin(), pass.slot_storage.end(), storage) != pass.slot_storage.end()) return;
+    }
+    const Storage& output = plan->storages[storage];
+    clear_texture(texture_of(output), *compiled->table.resources[output.resource].clear);
+  }
+
   void run_pass(std::size_t index, const Frame& frame, FrameTimer& timer);
 };
 
@@ -313,14 +323,14 @@ Result<const Texture*> Graph::execute(const Frame& frame, int width, int height,
     if (plan.passes[p].runs) impl_->run_pass(p, frame, timer);
   }
   reset_gl_state();
-  const Storage& output = plan.storages[plan.output_storage];
-  const Texture& texture = impl_->texture_of(output);
-  const bool untouched = std::none_of(plan.passes.begin(), plan.passes.end(), [&](const PassPlan& pass) {
-    return std::find(pass.slot_storage.begin(), pass.slot_storage.end(), plan.output_storage) != pass.slot_storage.end();
-  });
-  // Every writer rests: what is shown is what the resource is cleared to.
-  if (untouched && output.clear_first) clear_texture(texture, *impl_->compiled->table.resources[output.resource].clear);
-  return &texture;
+  impl_->clear_untouched(plan.output_storage);
+  impl_->clear_untouched(plan.linear_output_storage);
+  return &impl_->texture_of(plan.storages[plan.output_storage]);
+}
+
+const Texture* Graph::linear_output() const {
+  if (!impl_->plan || impl_->plan->linear_output_storage < 0) return nullptr;
+  return &impl_->texture_of(impl_->plan->storages[impl_->plan->linear_output_storage]);
 }
 
 void Graph::reset() { impl_->drop_textures(); }

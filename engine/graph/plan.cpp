@@ -162,6 +162,11 @@ class Planner {
       plan_.error = fmt::format("the output \"{}\" has no content: {}", table_.resources[table_.output].name,
                                 why_unwritten(table_.output, static_cast<int>(nodes_.size())));
     }
+    // Looked at beside the picture, where something writes it: it makes passes run, and fails nothing.
+    if (table_.linear_output >= 0 && final_[table_.linear_output] >= 0) {
+      need(final_[table_.linear_output]);
+      plan_.linear_output_storage = versions_[final_[table_.linear_output]].storage;
+    }
     for (std::size_t p = 0; p < nodes_.size(); ++p) {
       if (nodes_[p].possible && !plan_.passes[p].runs) plan_.passes[p].reason = unread(static_cast<int>(p));
     }
@@ -223,8 +228,9 @@ class Planner {
         if (storage >= 0) touch(storage, static_cast<int>(p));
       }
     }
-    if (plan_.output_storage >= 0) {
-      Storage& output = plan_.storages[plan_.output_storage];
+    for (const int shown : {plan_.output_storage, plan_.linear_output_storage}) {
+      if (shown < 0) continue;
+      Storage& output = plan_.storages[shown];
       if (output.first_pass < 0) output.first_pass = 0;  // shown as it was cleared
       output.last_pass = std::numeric_limits<int>::max();
     }

@@ -7,8 +7,8 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "engine/core/names.hpp"
 #include "engine/graph/artist_pass.hpp"
+#include "engine/graph/table_values.hpp"
 
 namespace petrichor {
 namespace {
@@ -21,60 +21,8 @@ constexpr std::string_view kPrevious = "previous:";
 constexpr std::string_view kPassKeys[] = {"pass", "1", "id", "parameters", "enabled"};
 constexpr std::string_view kComputeKeys[] = {"compute", "name", "read", "write", "modify", "parameters", "enabled"};
 
-// Where in the table: "city.lua: passes[3] (rain_field).depth".
-struct Place {
-  std::string text;
-  Place operator/(std::string_view key) const { return {fmt::format("{}.{}", text, key)}; }
-  tl::unexpected<Error> error(std::string_view message) const { return failure(fmt::format("{}: {}", text, message)); }
-};
-
-// Lua cannot tell an empty list from an empty map.
-bool is_map(const json& value) { return value.is_object() || (value.is_array() && value.empty()); }
-
 bool is_one_of(std::string_view key, std::span<const std::string_view> keys) {
   return std::find(keys.begin(), keys.end(), key) != keys.end();
-}
-
-tl::unexpected<Error> unknown(const Place& at, std::string_view what, std::string_view name,
-                              std::vector<std::string_view> known) {
-  if (known.empty()) return at.error(fmt::format("unknown {} \"{}\"; there is none", what, name));
-  return at.error(fmt::format("unknown {} \"{}\"{}", what, name, name_hint(name, known)));
-}
-
-Result<double> number(const Place& at, const json& value, double least, double most) {
-  if (!value.is_number()) return at.error(fmt::format("expected a number, got {}", value.type_name()));
-  const double v = value.get<double>();
-  if (!(v >= least && v <= most)) return at.error(fmt::format("{} is outside {} to {}", v, least, most));
-  return v;
-}
-
-Result<int> whole(const Place& at, const json& value, int least, int most) {
-  auto v = number(at, value, least, most);
-  if (!v) return tl::unexpected(v.error());
-  if (*v != std::floor(*v)) return at.error(fmt::format("expected a whole number, got {}", *v));
-  return static_cast<int>(*v);
-}
-
-Result<bool> boolean(const Place& at, const json& value) {
-  if (!value.is_boolean()) return at.error(fmt::format("expected true or false, got {}", value.type_name()));
-  return value.get<bool>();
-}
-
-Result<std::string> text(const Place& at, const json& value) {
-  if (!value.is_string()) return at.error(fmt::format("expected a string, got {}", value.type_name()));
-  return value.get<std::string>();
-}
-
-Result<std::vector<double>> numbers(const Place& at, const json& value) {
-  if (value.is_boolean()) return std::vector<double>{value.get<bool>() ? 1.0 : 0.0};
-  const json list = value.is_array() ? value : json::array({value});
-  std::vector<double> out;
-  for (const json& item : list) {
-    if (!item.is_number()) return at.error(fmt::format("expected a number or a list of 1 to 4, got {}", item.type_name()));
-    out.push_back(item.get<double>());
-  }
-  if (out.empty() || out.size() > 4) return at.error(fmt::format("expected 1 to 4 numbers, got {}", out.size()));
-  return out;
 }
 
 // target = the value of a Result, or its error to the caller.
@@ -94,7 +42,7 @@ Result<ResourceDesc> read_resource(const Place& at, const std::string& name, con
     const Place here = at / key;
     if (key == "format") {
       std::string format;
-      PETRICHOR_TAKE(format, text(here, v));
+      PETRICHOR_TAKE(format, read_text(here, v));
       desc.format = find_format(format);
       if (!desc.format) {
         std::vector<std::string_view> known;
@@ -102,23 +50,23 @@ Result<ResourceDesc> read_resource(const Place& at, const std::string& name, con
         return unknown(here, "format", format, std::move(known));
       }
     } else if (key == "scale") {
-      PETRICHOR_TAKE(desc.scale, number(here, v, 1.0 / 256, 8));
+      PETRICHOR_TAKE(desc.scale, read_number(here, v, 1.0 / 256, 8));
       has_scale = true;
     } else if (key == "width") {
-      PETRICHOR_TAKE(desc.width, whole(here, v, 1, kMaxPixels));
+      PETRICHOR_TAKE(desc.width, read_whole(here, v, 1, kMaxPixels));
     } else if (key == "height") {
-      PETRICHOR_TAKE(desc.height, whole(here, v, 1, kMaxPixels));
+      PETRICHOR_TAKE(desc.height, read_whole(here, v, 1, kMaxPixels));
     } else if (key == "mips") {
-      PETRICHOR_TAKE(desc.mips, whole(here, v, 0, 15));
+      PETRICHOR_TAKE(desc.mips, read_whole(here, v, 0, 15));
     } else if (key == "layers") {
-      PETRICHOR_TAKE(desc.layers, whole(here, v, 1, 2048));
+      PETRICHOR_TAKE(desc.layers, read_whole(here, v, 1, 2048));
     } else if (key == "history") {
-      PETRICHOR_TAKE(desc.history, boolean(here, v));
+      PETRICHOR_TAKE(desc.history, read_boolean(here, v));
     } else if (key == "persistent") {
-      PETRICHOR_TAKE(desc.persistent, boolean(here, v));
+      PETRICHOR_TAKE(desc.persistent, read_boolean(here, v));
     } else if (key == "clear") {
       std::vector<double> values;
-      PETRICHOR_TAKE(values, numbers(here, v));
+      PETRICHOR_TAKE(values, read_numbers(here, v));
       std::array<float, 4> clear{};
       // One number means all channels, as in clear = 1.
       for (std::size_t i = 0; i < 4; ++i) {
@@ -144,13 +92,15 @@ class TableReader {
   Result<Table> read(const json& value) {
     if (!value.is_object()) return root_.error("the render script returns a table with resources, passes and output");
     for (const auto& [key, v] : value.items()) {
-      if (key != "resources" && key != "passes" && key != "output") {
-        return unknown(root_, "key", key, {"resources", "passes", "output"});
+      if (key != "resources" && key != "passes" && key != "output" && key != "linear_output") {
+        return unknown(root_, "key", key, {"resources", "passes", "output", "linear_output"});
       }
     }
     if (auto done = resources(value); !done) return tl::unexpected(done.error());
     if (auto done = passes(value); !done) return tl::unexpected(done.error());
-    if (auto done = output(value); !done) return tl::unexpected(done.error());
+    if (!value.contains("output")) return root_.error("output is missing: name the resource to show");
+    PETRICHOR_TAKE(table_.output, output(value, "output"));
+    if (value.contains("linear_output")) PETRICHOR_TAKE(table_.linear_output, output(value, "linear_output"));
     if (auto done = order(); !done) return tl::unexpected(done.error());
     return std::move(table_);
   }
@@ -192,16 +142,13 @@ class TableReader {
     return {};
   }
 
-  Result<void> output(const json& value) {
-    const auto found = value.find("output");
-    if (found == value.end()) return root_.error("output is missing: name the resource to show");
+  Result<int> output(const json& value, const char* key) const {
     std::string name;
-    PETRICHOR_TAKE(name, text(at("output"), *found));
+    PETRICHOR_TAKE(name, read_text(at(key), value[key]));
     Connection connection;
-    PETRICHOR_TAKE(connection, resource(at("output"), name));
-    if (connection.previous) return at("output").error("is last frame's; name the resource itself");
-    table_.output = connection.resource;
-    return {};
+    PETRICHOR_TAKE(connection, resource(at(key), name));
+    if (connection.previous) return at(key).error("is last frame's; name the resource itself");
+    return connection.resource;
   }
 
   Result<Connection> resource(const Place& here, const std::string& name) const {
@@ -224,7 +171,7 @@ class TableReader {
 
   Result<Connection> connect(const Place& here, const json& value, const Slot& slot) const {
     std::string name;
-    PETRICHOR_TAKE(name, text(here, value));
+    PETRICHOR_TAKE(name, read_text(here, value));
     Connection connection;
     PETRICHOR_TAKE(connection, resource(here, name));
     if (connection.previous && slot.access != SlotAccess::read) {
@@ -237,7 +184,7 @@ class TableReader {
     const auto key = value.contains("pass") ? value.find("pass") : value.find("1");
     if (key == value.end()) return here.error("names no pass: write { pass = \"name\", ... } or { compute = \"file\", ... }");
     PassNode node;
-    PETRICHOR_TAKE(node.id, text(here / "pass", *key));
+    PETRICHOR_TAKE(node.id, read_text(here / "pass", *key));
     for (const PassOffer& offer : offers_) {
       if (offer.name == node.id) node.offer = &offer;
     }
@@ -252,9 +199,9 @@ class TableReader {
     node.parameters = offer.parameters;
     for (const auto& [k, v] : value.items()) {
       if (k == "id") {
-        PETRICHOR_TAKE(node.id, text(named / k, v));
+        PETRICHOR_TAKE(node.id, read_text(named / k, v));
       } else if (k == "enabled") {
-        PETRICHOR_TAKE(node.enabled, boolean(named / k, v));
+        PETRICHOR_TAKE(node.enabled, read_boolean(named / k, v));
       } else if (k == "parameters") {
         if (auto done = parameters(named / k, v, node); !done) return tl::unexpected(done.error());
       } else if (!is_one_of(k, kPassKeys)) {
@@ -292,7 +239,7 @@ class TableReader {
       if (v.is_boolean()) {
         known->second = v.get<bool>() ? 1.0 : 0.0;
       } else {
-        PETRICHOR_TAKE(known->second, number(here / name, v, -1e30, 1e30));
+        PETRICHOR_TAKE(known->second, read_number(here / name, v, -1e30, 1e30));
       }
     }
     return {};
@@ -304,14 +251,14 @@ class TableReader {
     }
     PassNode node;
     ArtistPass artist;
-    PETRICHOR_TAKE(artist.file, text(here / "compute", value.at("compute")));
+    PETRICHOR_TAKE(artist.file, read_text(here / "compute", value.at("compute")));
     if (!artist.file.ends_with(".comp.glsl")) {
       return (here / "compute").error(fmt::format("\"{}\": a compute shader's name ends in .comp.glsl", artist.file));
     }
     node.id = artist.file.substr(artist.file.find_last_of('/') + 1);
     node.id.resize(node.id.size() - std::string_view(".comp.glsl").size());
-    if (value.contains("name")) PETRICHOR_TAKE(node.id, text(here / "name", value["name"]));
-    if (value.contains("enabled")) PETRICHOR_TAKE(node.enabled, boolean(here / "enabled", value["enabled"]));
+    if (value.contains("name")) PETRICHOR_TAKE(node.id, read_text(here / "name", value["name"]));
+    if (value.contains("enabled")) PETRICHOR_TAKE(node.enabled, read_boolean(here / "enabled", value["enabled"]));
     const Place named{fmt::format("{} ({})", here.text, node.id)};
 
     std::vector<Slot> slots;
@@ -342,7 +289,7 @@ class TableReader {
       const Place parameters_place = named / "parameters";
       if (!is_map(value["parameters"])) return parameters_place.error("expected a table of UNIFORM = value");
       for (const auto& [uniform, v] : value["parameters"].items()) {
-        PETRICHOR_TAKE(artist.uniforms[uniform], numbers(parameters_place / uniform, v));
+        PETRICHOR_TAKE(artist.uniforms[uniform], read_numbers(parameters_place / uniform, v));
       }
     }
     artist.id = node.id;
@@ -407,8 +354,9 @@ class TableReader {
       return here.error(fmt::format("\"{}\" is read before any pass has written it; move the pass down", desc.name));
     });
     if (!done) return done;
-    if (!ever[table_.output]) {
-      return at("output").error(fmt::format("no pass writes \"{}\"", table_.resources[table_.output].name));
+    for (const auto& [key, resource] : {std::pair{"output", table_.output}, std::pair{"linear_output", table_.linear_output}}) {
+      if (resource < 0 || ever[resource]) continue;
+      return at(key).error(fmt::format("no pass writes \"{}\"", table_.resources[resource].name));
     }
     return {};
   }

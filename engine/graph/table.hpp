@@ -47,6 +47,7 @@ struct Table {
   std::vector<ResourceDesc> resources;
   std::vector<PassNode> passes;  // in order of execution
   int output = -1;               // resource
+  int linear_output = -1;        // resource; -1: none
 };
 
 // Errors name source and place, counting as Lua does: "city.lua: passes[3] (rain_field).depth: ...".

@@ -7,6 +7,7 @@
 #include <atomic>
 #include <mutex>
 #include <set>
+#include <vector>
 
 namespace petrichor {
 namespace {
@@ -15,6 +16,7 @@ std::atomic<int> error_count{0};
 std::mutex message_mutex;  // drivers may call back from their own threads
 std::string last_error;
 std::set<std::string> logged;
+std::vector<std::string> groups;  // open debug groups: the passes of the frame name themselves so
 
 void on_debug_message(GLenum source, GLenum type, GLuint, GLenum severity, GLsizei length, const GLchar* text,
                       const void*) {
@@ -22,9 +24,19 @@ void on_debug_message(GLenum source, GLenum type, GLuint, GLenum severity, GLsiz
   if (source == GL_DEBUG_SOURCE_SHADER_COMPILER) return;
   // Where a driver keeps a buffer is its own affair.
   if (type == GL_DEBUG_TYPE_PERFORMANCE && severity != GL_DEBUG_SEVERITY_HIGH) return;
+  if (type == GL_DEBUG_TYPE_PUSH_GROUP || type == GL_DEBUG_TYPE_POP_GROUP) {
+    std::lock_guard lock(message_mutex);
+    if (type == GL_DEBUG_TYPE_PUSH_GROUP) {
+      groups.emplace_back(text);
+    } else if (!groups.empty()) {
+      groups.pop_back();
+    }
+    return;
+  }
   std::string message(text, length >= 0 ? static_cast<std::size_t>(length) : std::char_traits<char>::length(text));
   while (!message.empty() && (message.back() == '\n' || message.back() == ' ')) message.pop_back();
   std::lock_guard lock(message_mutex);
+  if (!groups.empty()) message += " (in " + groups.back() + ")";
   if (type == GL_DEBUG_TYPE_ERROR) {
     ++error_count;
     last_error = message;
@@ -78,6 +90,9 @@ void set_up_current_context(bool debug) {
     glDebugMessageCallback(on_debug_message, nullptr);
     // Notifications are chatter (buffer placement and the like).
     glDebugMessageControl(GL_DONT_CARE, GL_DONT_CARE, GL_DEBUG_SEVERITY_NOTIFICATION, 0, nullptr, GL_FALSE);
+    for (const GLenum type : {GL_DEBUG_TYPE_PUSH_GROUP, GL_DEBUG_TYPE_POP_GROUP}) {
+      glDebugMessageControl(GL_DONT_CARE, type, GL_DONT_CARE, 0, nullptr, GL_TRUE);
+    }
   }
   glEnable(GL_TEXTURE_CUBE_MAP_SEAMLESS);
   glPixelStorei(GL_PACK_ALIGNMENT, 1);

@@ -233,7 +233,7 @@ Result<std::unique_ptr<Context>> make_headless_context(const ContextOptions& opt
   if (found.empty()) found = "\n  no EGL device at all";
   return failure(fmt::format(
       "No usable OpenGL without a window{}. Found:{}\nNeeded: OpenGL 4.5 core through EGL, from a graphics driver or, "
-      "in software, from the package libgl1-mesa-dri.",
+      "in software, from the packages libegl-mesa0 and libgl1-mesa-dri.",
       wish.empty() ? "" : " for PETRICHOR_DEVICE=" + wish, found));
 }
 

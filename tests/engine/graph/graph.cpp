@@ -253,6 +253,31 @@ TEST_F(GraphTest, PersistentResourcesAccumulate) {
   EXPECT_EQ(run(), 30.0f);
 }
 
+TEST_F(GraphTest, TheLinearOutputIsKeptWholeBesideTheOutput) {
+  json table = {{"resources", {{"light", rgba16f()}, {"b", rgba16f()}, {"c", rgba16f()}, {"picture", rgba16f()}}},
+                {"passes", {pass("fill", {{"out", "light"}, {"parameters", {{"value", 3}}}}),
+                            pass("copy", {{"image", "light"}, {"out", "b"}}), pass("add", {{"target", "b"}}),
+                            pass("copy", {{"image", "b"}, {"out", "c"}, {"id", "c"}}), pass("add", {{"target", "c"}, {"id", "add_c"}}),
+                            pass("copy", {{"image", "c"}, {"out", "picture"}, {"id", "picture"}})}},
+                {"output", "picture"}};
+  load(table);
+  EXPECT_EQ(run(), 23.0f);
+  EXPECT_EQ(graph.linear_output(), nullptr);
+  table["linear_output"] = "light";
+  load(table);
+  EXPECT_EQ(graph.linear_output(), nullptr) << "before the first frame";
+  EXPECT_EQ(run(), 23.0f);
+  ASSERT_NE(graph.linear_output(), nullptr);
+  EXPECT_EQ(first_pixel(*graph.linear_output()), 3.0f) << "no later pass took its texture";
+  // It alone makes its writer run; without a writer this frame there is none, and the picture stands.
+  load({{"resources", {{"a", rgba16f()}, {"m", rgba16f()}}}, {"passes", {pass("fill", {{"out", "a"}}), pass("fog", {{"mask", "m"}})}},
+        {"output", "a"}, {"linear_output", "m"}});
+  EXPECT_EQ(run(), 1.0f);
+  EXPECT_EQ(first_pixel(*graph.linear_output()), 1000.0f);
+  EXPECT_EQ(run({.fog = false}), 1.0f);
+  EXPECT_EQ(graph.linear_output(), nullptr);
+}
+
 TEST_F(GraphTest, SizesFollowTheOutput) {
   load({{"resources", {{"a", rgba16f({{"scale", 0.5}, {"mips", 0}})}}}, {"passes", {pass("fill", {{"out", "a"}})}}, {"output", "a"}});
   for (const auto& [w, h, half_w, half_h, levels] : {std::array{9, 4, 5, 2, 3}, std::array{1, 1, 1, 1, 1}}) {
@@ -342,6 +367,20 @@ TEST_F(GraphTest, PassesStartFromTheSameState) {
   EXPECT_FALSE(depth_test);
   EXPECT_FALSE(blend);
   EXPECT_EQ(viewport[2], 8);
+}
+
+TEST_F(GraphTest, GlErrorsNameThePass) {
+  std::vector<PassOffer> offers;
+  offers.push_back({.name = "faulty", .slots = {}, .execute = [](PassContext&) { glEnable(0xbad); }});
+  offers.push_back({.name = "fine", .slots = {{"out", SlotAccess::write}},
+                    .execute = [](PassContext& p) { test::fill(p.texture("out"), 1); }});
+  Graph other(shaders, std::move(offers));
+  ASSERT_TRUE(other.load_table({{"resources", {{"a", rgba16f()}}}, {"passes", {{{"1", "faulty"}}, {{"1", "fine"}, {"out", "a"}}}}, {"output", "a"}}, "x"));
+  const int before = gl_error_count();
+  ASSERT_TRUE(other.execute({}, 8, 4, timer));
+  EXPECT_EQ(gl_error_count(), before + 1);
+  EXPECT_NE(last_gl_error().find("(in faulty)"), std::string::npos) << last_gl_error();
+  expected_errors(1);
 }
 
 TEST_F(GraphTest, FramebuffersOfSlotsAreBoundAndSized) {

@@ -3,14 +3,15 @@
 
 #include <epoxy/gl.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
-#include <array>
+#include <chrono>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <memory>
+#include <stdexcept>
 #include <string>
-#include <unistd.h>
 
 #include "engine/platform/context.hpp"
 
@@ -31,6 +32,8 @@ class GlTest : public ::testing::Test {
     errors_before_ = gl_error_count();
   }
   void TearDown() override { EXPECT_EQ(gl_error_count(), errors_before_) << last_gl_error(); }
+  // For a test that makes errors on purpose.
+  void expected_errors(int count) { errors_before_ += count; }
 
  private:
   int errors_before_ = 0;
