@@ -103,10 +103,25 @@ PassOffer atmosphere() {
           }};
 }
 
+PassOffer sky() {
+  return {"sky",
+          "the night sky everywhere: a background for frames without surfaces",
+          {{"colour", SlotAccess::write}},
+          {},
+          {{"sky", {{"systems/atmosphere/sky.comp.glsl"}, {}}}},
+          {},
+          [](PassContext& context) {
+            context.program("sky").use();
+            context.bind_image(0, "colour", GL_WRITE_ONLY);
+            context.program("sky").dispatch(context.width, context.height);
+          }};
+}
+
 }  // namespace
 
 std::vector<PassOffer> atmosphere_passes() {
   std::vector<PassOffer> offers;
+  offers.push_back(sky());
   offers.push_back(airlight());
   offers.push_back(atmosphere());
   return offers;

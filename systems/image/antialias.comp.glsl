@@ -18,26 +18,27 @@ const float STEP[STEPS] = float[STEPS](1.0, 1.0, 1.5, 2.0, 2.0, 3.0, 4.0);
 
 float luma(vec2 pixel) { return textureLod(display, pixel * frame.size.zw, 0.0).a; }
 
+float neighbour(ivec2 texel, ivec2 offset, ivec2 last) {
+  return texelFetch(display, clamp(texel + offset, ivec2(0), last), 0).a;
+}
+
 void main() {
   ivec2 texel = ivec2(gl_GlobalInvocationID.xy);
   ivec2 last = ivec2(frame.size.xy) - 1;
   if (any(greaterThan(texel, last))) return;
   vec2 pixel = vec2(texel) + 0.5;
 
-  // Gathers about the pixel's lower left and upper right corners hold all nine neighbours but two.
   vec4 centre = texelFetch(display, texel, 0);
   float m = centre.a;
-  vec4 low = textureGather(display, (pixel - 0.5) * frame.size.zw, 3);   // x: west, y: this, z: south, w: south-west
-  vec4 high = textureGather(display, (pixel + 0.5) * frame.size.zw, 3);  // x: north, y: north-east, z: east, w: this
-  float west = low.x, south = low.z, south_west = low.w;
-  float north = high.x, east = high.z, north_east = high.y;
+  float west = neighbour(texel, ivec2(-1, 0), last), east = neighbour(texel, ivec2(1, 0), last);
+  float south = neighbour(texel, ivec2(0, -1), last), north = neighbour(texel, ivec2(0, 1), last);
   float brightest = max(m, max(max(west, east), max(north, south)));
   float darkest = min(m, min(min(west, east), min(north, south)));
   float contrast = brightest - darkest;
   bool edge = contrast > max(least_contrast, relative_contrast * brightest);
 
-  float north_west = texelFetch(display, clamp(texel + ivec2(-1, 1), ivec2(0), last), 0).a;
-  float south_east = texelFetch(display, clamp(texel + ivec2(1, -1), ivec2(0), last), 0).a;
+  float north_west = neighbour(texel, ivec2(-1, 1), last), north_east = neighbour(texel, ivec2(1, 1), last);
+  float south_west = neighbour(texel, ivec2(-1, -1), last), south_east = neighbour(texel, ivec2(1, -1), last);
 
   // How much the pixel stands out from a tent over its neighbours.
   float mean = (2.0 * (north + south + east + west) + north_west + north_east + south_west + south_east) / 12.0;

@@ -105,9 +105,13 @@ void light_probe(Environment& environment, EnvironmentProbe& probe, const Frame&
   glBindTextureUnit(0, probe.radiance.id);
   glBindImageTexture(0, probe.environment.id, 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RGBA16F);
   programs.filter.use();
-  programs.filter.dispatch(ENVIRONMENT_WIDTH, ENVIRONMENT_TILE);
+  programs.filter.dispatch(ENVIRONMENT_LEVELS * ENVIRONMENT_TILE, ENVIRONMENT_TILE);
   programs.harmonics.use();
   glDispatchCompute(9, 1, 1);
+  glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
+  glBindImageTexture(0, probe.environment.id, 0, GL_FALSE, 0, GL_READ_WRITE, GL_RGBA16F);
+  programs.diffuse.use();
+  programs.diffuse.dispatch(ENVIRONMENT_TILE, ENVIRONMENT_TILE);
   glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
   probe.lit = true;
 }

@@ -48,6 +48,7 @@ struct EnvironmentPrograms {
   const Program& light;
   const Program& filter;
   const Program& harmonics;
+  const Program& diffuse;
   const Program& blend;
 };
 

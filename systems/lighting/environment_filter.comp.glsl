@@ -18,7 +18,7 @@ vec3 radiance_along(vec3 direction) {
 
 void main() {
   ivec2 texel = ivec2(gl_GlobalInvocationID.xy);
-  if (texel.x >= ENVIRONMENT_WIDTH || texel.y >= ENVIRONMENT_TILE) return;
+  if (texel.x >= ENVIRONMENT_LEVELS * ENVIRONMENT_TILE || texel.y >= ENVIRONMENT_TILE) return;
   int level = texel.x / ENVIRONMENT_TILE;
   vec2 inside = vec2(texel.x % ENVIRONMENT_TILE, texel.y) + 0.5;
   vec3 n = direction_from_square((inside - float(ENVIRONMENT_BORDER)) /

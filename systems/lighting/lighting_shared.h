@@ -18,17 +18,18 @@ namespace petrichor {
 #define SHADOW_TILES_PER_SIDE 4
 #define MAXIMUM_SHADOWS 16
 #define SHADOW_TILE 512
-#define SHADOW_BORDER 16      // texels repeated round a tile, so that filters and 5 mip levels stay inside
-#define SHADOW_LEVELS 5
+#define SHADOW_BORDER 16      // texels repeated round a tile, so that filters stay inside
+#define SHADOW_BLUR_LEVEL 3   // mip level that the wide blur is made from
 #define SHADOW_WARP 40.0f     // exponent of the warped depth; exp(2 * 40) still fits a float
 #define SHADOW_FACE 256       // texels of the six depth maps that a tile is made from
 #define SHADOW_NEAR_M 0.04f
 
-// The environment: six octahedral tiles, one per step of roughness, and a row of nine SH coefficients below.
+// The environment: six octahedral tiles, one per step of roughness, a seventh of diffuse light, and below them a
+// row of nine SH coefficients.
 #define ENVIRONMENT_TILE 64
 #define ENVIRONMENT_BORDER 1
 #define ENVIRONMENT_LEVELS 6
-#define ENVIRONMENT_WIDTH 384  // ENVIRONMENT_TILE * ENVIRONMENT_LEVELS
+#define ENVIRONMENT_WIDTH 448  // ENVIRONMENT_TILE * (ENVIRONMENT_LEVELS + 1)
 #define ENVIRONMENT_HEIGHT 65
 #define ENVIRONMENT_FACE 32
 

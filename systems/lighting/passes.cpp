@@ -32,11 +32,13 @@ PassOffer shadow_maps(State state) {
           {{"shadow_atlas", SlotAccess::write}},
           {},
           {{"depth", {{"systems/geometry/depth.vert.glsl", "systems/geometry/depth.frag.glsl"}, {}}},
-           {"moments", {{"systems/lighting/shadow_moments.comp.glsl"}, {}}}},
+           {"moments", {{"systems/lighting/shadow_moments.comp.glsl"}, {}}},
+           {"pack", {{"systems/lighting/shadow_pack.comp.glsl"}, {}}}},
           [](const Frame& frame) { return frame.scene && !shadow_casters(frame).empty(); },
           [state](PassContext& context) {
             update_shadow_maps(state->shadows, context.frame, context.texture("shadow_atlas"),
-                               context.fresh("shadow_atlas"), context.program("depth"), context.program("moments"));
+                               context.fresh("shadow_atlas"),
+                               {context.program("depth"), context.program("moments"), context.program("pack")});
           }};
 }
 
@@ -52,6 +54,7 @@ PassOffer environment(State state) {
            {"light_shadows", {{"systems/lighting/environment_light.comp.glsl"}, {"SHADOWS"}}},
            {"filter", {{"systems/lighting/environment_filter.comp.glsl"}, {}}},
            {"harmonics", {{"systems/lighting/environment_sh.comp.glsl"}, {}}},
+           {"diffuse", {{"systems/lighting/environment_diffuse.comp.glsl"}, {}}},
            {"blend", {{"systems/lighting/environment_blend.comp.glsl"}, {}}}},
           {},
           [state](PassContext& context) {
@@ -59,7 +62,7 @@ PassOffer environment(State state) {
             const EnvironmentPrograms programs{context.program("surfaces"),
                                                context.program(shadows ? "light_shadows" : "light"),
                                                context.program("filter"), context.program("harmonics"),
-                                               context.program("blend")};
+                                               context.program("diffuse"), context.program("blend")};
             update_environment(state->environment, context.frame, context.parameter("spacing_m"),
                                shadows ? &context.texture("shadow_atlas") : nullptr, shadow_slots(*state, context),
                                programs, context.texture("environment"));

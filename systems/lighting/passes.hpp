@@ -11,8 +11,8 @@ namespace petrichor {
 
 struct LightingState;  // systems/lighting/state.hpp
 
-// shadow_maps:  shadow_atlas (rg32f 2048x2048, 5 mips, persistent), redrawn where a caster or the scene changed.
-// environment:  environment (rgba16f 384x65): the captured surroundings, read by environment.glsl.
+// shadow_maps:  shadow_atlas (rgba32f 2048x2048, persistent), redrawn where a caster or the scene changed.
+// environment:  environment (rgba16f 448x65): the captured surroundings, read by environment.glsl.
 // light_lists:  light_lists (rgba32ui, scale 1/8): the lights that each tile of pixels sees; also binds the block of
 //               chosen lights (CHOSEN_LIGHTS_BINDING) for the passes after it.
 // shade:        colour (rgba16f), cd/m2: every surface lit. Texels of the sky are 0.

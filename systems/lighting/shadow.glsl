@@ -1,6 +1,7 @@
-// Looking up the shadow atlas: how much of a light reaches a place, with a penumbra that widens with the
-// distance between occluder and receiver (the idea of Fernando 2005, "Percentage-Closer Soft Shadows", on
-// filtered moments: the mean occluder is solved from the moments, and the penumbra's width picks the mip level).
+// Looking up the shadow atlas: how much of a light reaches a place, with a penumbra that widens with the distance
+// between occluder and receiver (the idea of Fernando 2005, "Percentage-Closer Soft Shadows", on filtered moments:
+// the blurred moments are solved for the occluder's distance, and the penumbra's width chooses between sharp and
+// blurred). One lookup: on software OpenGL each costs as much as half a light.
 #ifndef SYSTEMS_LIGHTING_SHADOW_GLSL
 #define SYSTEMS_LIGHTING_SHADOW_GLSL
 #include "systems/lighting/lighting_shared.h"
@@ -11,8 +12,8 @@
 #endif
 layout(binding = SHADOW_ATLAS_UNIT) uniform sampler2D shadow_atlas;
 
-const float SHADOW_SEARCH_LEVEL = 2.0;
-// Radians that a texel of a tile covers, on average over the sphere.
+// Width of the blurred moments, in texels, and radians that a texel of a tile covers, on average over the sphere.
+const float SHADOW_BLUR_TEXELS = 1.5 * float(1 << SHADOW_BLUR_LEVEL);
 const float SHADOW_TEXEL_RAD = 3.5449077 / float(SHADOW_TILE - 2 * SHADOW_BORDER);
 
 vec2 shadow_place(float slot, vec3 from_light) {
@@ -31,25 +32,23 @@ float lit_share(vec2 moments, float warped) {
 
 // from_light: light to receiver, metres. reach_m: of its map, farther receivers are lit.
 float soft_shadow(float slot, vec3 from_light, float reach_m, float source_radius_m, float bias_m) {
-  vec2 place = shadow_place(slot, from_light);
+  vec4 moments = textureLod(shadow_atlas, shadow_place(slot, from_light), 0.0);
   float d = length(from_light);
   float warped = exp(SHADOW_WARP * min((d - bias_m) / reach_m, 1.0));
-  vec2 coarse = textureLod(shadow_atlas, place, SHADOW_SEARCH_LEVEL).rg;
+  float sharp = lit_share(moments.xy, warped), blurred = lit_share(moments.zw, warped);
   // mean = p * receiver + (1 - p) * occluder, in warped distance.
-  float p = lit_share(coarse, warped);
-  float occluder_warped = max((coarse.x - p * warped) / max(1.0 - p, 1e-3), 1.0);
+  float occluder_warped = max((moments.z - blurred * warped) / max(1.0 - blurred, 1e-3), 1.0);
   float occluder = clamp(log(occluder_warped) * reach_m / SHADOW_WARP, 0.1, d);
   float penumbra_rad = 2.0 * source_radius_m * (d - occluder) / (occluder * d);
-  float level = clamp(log2(max(penumbra_rad / (2.0 * SHADOW_TEXEL_RAD), 1.0)), 0.0, float(SHADOW_LEVELS - 1));
-  float share = lit_share(textureLod(shadow_atlas, place, level).rg, warped);
+  float share = mix(sharp, blurred, clamp(penumbra_rad / (SHADOW_BLUR_TEXELS * SHADOW_TEXEL_RAD), 0.0, 1.0));
   // The bound lets some light through behind two occluders in a row: its lowest part is taken as dark.
   return clamp((share - 0.15) / 0.85, 0.0, 1.0);
 }
 
-// One lookup at a fixed softness, for volumes of mist and for small captures.
+// A fixed softness, for volumes of mist and for small captures.
 float plain_shadow(float slot, vec3 from_light, float reach_m) {
   float warped = exp(SHADOW_WARP * min((length(from_light) - 0.05) / reach_m, 1.0));
-  float share = lit_share(textureLod(shadow_atlas, shadow_place(slot, from_light), SHADOW_SEARCH_LEVEL).rg, warped);
+  float share = lit_share(textureLod(shadow_atlas, shadow_place(slot, from_light), 0.0).ba, warped);
   return clamp((share - 0.15) / 0.85, 0.0, 1.0);
 }
 

@@ -28,12 +28,18 @@ struct ShadowMaps {
 
   Texture face_depth;  // six layers
   std::array<Framebuffer, 6> faces;
+  Texture tile;
 };
 
-// Brings the atlas (rg32f, SHADOW_TILES_PER_SIDE * SHADOW_TILE square, SHADOW_LEVELS mips) up to date. fresh: its
-// content is undefined. Each map is drawn in coordinates relative to its light, so that it is the same to the bit
-// wherever the camera stood when it was drawn.
-void update_shadow_maps(ShadowMaps&, const Frame&, const Texture& atlas, bool fresh, const Program& depth,
-                        const Program& moments);
+struct ShadowPrograms {
+  const Program& depth;    // faces
+  const Program& moments;  // faces -> tile
+  const Program& pack;     // tile -> atlas
+};
+
+// Brings the atlas (rgba32f, SHADOW_TILES_PER_SIDE * SHADOW_TILE square) up to date. fresh: its content is undefined.
+// Each map is drawn in coordinates relative to its light, so that it is the same to the bit wherever the camera
+// stood when it was drawn.
+void update_shadow_maps(ShadowMaps&, const Frame&, const Texture& atlas, bool fresh, const ShadowPrograms&);
 
 }  // namespace petrichor

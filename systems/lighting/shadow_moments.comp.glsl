@@ -1,15 +1,14 @@
 #version 450 core
-// Six depth maps round a light become one tile of the shadow atlas: an octahedral map of the first two moments of
+// Six depth maps round a light become an octahedral map of the first two moments of
 // exp(SHADOW_WARP * d / reach), d the distance to the light (Donnelly and Lauritzen 2006, "Variance Shadow Maps";
 // Lauritzen and McCool 2008, "Layered Variance Shadow Maps", section on exponential warps). Moments may be
-// filtered and mipmapped, which depths may not: one lookup then is a soft shadow.
+// filtered, which depths may not: one lookup then is a soft shadow. shadow_pack.comp.glsl puts it into the atlas.
 #include "systems/lighting/lighting_shared.h"
 #include "systems/lighting/octahedral.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(binding = 0) uniform sampler2DArray face_depth;  // reversed, infinite: near / axial distance; 0 nothing hit
-layout(binding = 0, rg32f) uniform writeonly image2D atlas;
-uniform ivec2 tile_origin;
+layout(binding = 0, rg32f) uniform writeonly image2D tile;
 uniform float reach_m;
 
 float distance_along(vec3 direction) {
@@ -34,5 +33,5 @@ void main() {
       float warped = exp(SHADOW_WARP * distance_along(direction) / reach_m);
       moments += weights[x] * weights[y] * vec2(warped, warped * warped);
     }
-  imageStore(atlas, tile_origin + texel, vec4(moments, 0.0, 0.0));
+  imageStore(tile, texel, vec4(moments, 0.0, 0.0));
 }

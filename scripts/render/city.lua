@@ -1,0 +1,64 @@
+-- The frame: what is drawn, in which order, from what into what. Read at start and again whenever this file is saved.
+--
+-- A pass names its slots and the resource in each. It runs where somebody reads what it writes and where the scene
+-- asks for it (no rain: no rain pass; clear air: no airlight). `petrichor info` lists all passes with their slots and
+-- parameters, `petrichor info --graph frame.dot` draws this frame.
+--
+-- Light is in cd/m2 up to the tone map; the camera's exposure_ev100 says what is white.
+
+local resources = {
+  -- The G-buffer: what the camera sees of surfaces (systems/geometry/gbuffer.glsl).
+  depth    = { format = "depth32f" },
+  albedo   = { format = "rgba8" },
+  normal   = { format = "rgba16" },           -- with roughness and occlusion
+  emissive = { format = "r11f_g11f_b10f" },
+
+  -- Kept while nothing moves.
+  occlusion_map = { format = "depth32f", width = 1024, height = 1024, persistent = true },  -- shelter from the rain
+  shadow_atlas  = { format = "rgba32f", width = 2048, height = 2048, persistent = true },   -- 16 lamps of 512x512
+
+  environment = { format = "rgba16f", width = 448, height = 65 },  -- the street all round, blurred in steps
+  light_lists = { format = "rgba32ui", scale = 1 / 8 },            -- a bit a lamp, for every 8x8 pixels
+  colour      = { format = "rgba16f" },                            -- the picture as light
+  airlight    = { format = "rgba16f", scale = 1 / 4 },             -- lamps glowing in the mist
+  bloom       = { format = "rgba16f", scale = 1 / 2, mips = 6 },   -- what the lens scatters
+  display     = { format = "rgba16f" },                            -- the picture as seen, before antialiasing
+  picture     = { format = "rgba8" },
+}
+
+local passes = {
+  -- Geometry: the only rasterised passes.
+  { pass = "gbuffer", depth = "depth", albedo = "albedo", normal = "normal", emissive = "emissive" },
+  { pass = "occlusion_map", occlusion_map = "occlusion_map" },
+  { pass = "shadow_maps", shadow_atlas = "shadow_atlas" },
+
+  -- Light. threshold: of a white pixel; a lamp that adds less to a tile of pixels is left out there.
+  { pass = "environment", environment = "environment", shadow_atlas = "shadow_atlas" },
+  { pass = "light_lists", depth = "depth", normal = "normal", shadow_atlas = "shadow_atlas", light_lists = "light_lists",
+    parameters = { threshold = 0.002 } },
+  { pass = "shade", depth = "depth", albedo = "albedo", normal = "normal", emissive = "emissive",
+    light_lists = "light_lists", shadow_atlas = "shadow_atlas", environment = "environment", colour = "colour" },
+  { pass = "glass", colour = "colour", depth = "depth", environment = "environment" },
+
+  -- Air. forward: how much mist scatters ahead; 0 evenly, towards 1 tighter and brighter halos.
+  { pass = "airlight", depth = "depth", light_lists = "light_lists", shadow_atlas = "shadow_atlas", airlight = "airlight",
+    parameters = { forward = 0.8 } },
+  { pass = "atmosphere", colour = "colour", depth = "depth", airlight = "airlight", environment = "environment" },
+
+  -- Rain: the cells of the drop field in view, their drops as streaks, and those laid over the picture.
+  { pass = "rain_cells" },
+  { pass = "rain_splat", depth = "depth", occlusion_map = "occlusion_map" },
+  { pass = "rain_composite", colour = "colour", environment = "environment" },
+
+  -- An artist's own pass: a compute shader of yours over any resource. Say this makes reds burn (image "picture_in" of
+  -- the shader is read and written; parameters are its uniforms; every pixel is one invocation):
+  --   { compute = "my_shaders/burn_reds.comp.glsl", name = "burn_reds",
+  --     modify = { picture_in = "colour" }, parameters = { strength = 0.3 } },
+
+  -- From light to picture.
+  { pass = "bloom", colour = "colour", bloom = "bloom", parameters = { spread = 0.6 } },
+  { pass = "tonemap", colour = "colour", bloom = "bloom", display = "display" },
+  { pass = "antialias", display = "display", picture = "picture" },
+}
+
+return { resources = resources, passes = passes, output = "picture", linear_output = "colour" }
