@@ -8,7 +8,7 @@
 #include "systems/geometry/passes.hpp"
 #include "systems/image/passes.hpp"
 #include "systems/lighting/passes.hpp"
-#include "systems/occlusion/passes.hpp"
+#include "systems/occlusion/occlusion.hpp"
 #include "systems/rainfall/extract.hpp"
 #include "systems/rainfall/passes.hpp"
 #include "systems/scene/propagate.hpp"
@@ -49,10 +49,8 @@ std::vector<std::string_view> outside_resources() { return {"time", "input"}; }
 
 std::vector<PassOffer> all_passes() {
   std::vector<PassOffer> all;
-  for (auto* offers : {geometry_passes, occlusion_passes, lighting_passes, atmosphere_passes, rainfall_passes, image_passes}) {
-    auto some = offers();
+  for (std::vector<PassOffer> some : {geometry_passes(), occlusion_passes(), lighting_passes(), atmosphere_passes(), rainfall_passes(), image_passes()})
     all.insert(all.end(), std::make_move_iterator(some.begin()), std::make_move_iterator(some.end()));
-  }
   return all;
 }
 

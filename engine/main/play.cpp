@@ -1,5 +1,6 @@
 // The sandbox: the main loop.
 
+#define GLFW_INCLUDE_NONE  // epoxy brings OpenGL
 #include <GLFW/glfw3.h>
 
 #include <chrono>
@@ -13,7 +14,7 @@
 #include "engine/main/renderer.hpp"
 #include "engine/main/world.hpp"
 #include "systems/interface/interface.hpp"
-#include "systems/rainfall/stats.hpp"
+#include "systems/rainfall/passes.hpp"
 
 namespace petrichor {
 namespace {
@@ -153,7 +154,7 @@ Result<void> play(const PlayOptions& options) {
     if (auto timings = renderer.timer->collect(); !timings.empty()) overlay.pass_ms = std::move(timings);
     overlay.frame_ms.assign(frame_ms.begin(), frame_ms.end());
     overlay.rain_mm_per_hour = frame.rain ? frame.rain->rain_mm_per_hour : 0.0f;
-    if (state.show_times) overlay.drops_drawn = rain_stats().drops_drawn;
+    if (state.show_times) overlay.drops_drawn = rain_stats(frame).drops_drawn;
     interface.draw(state, overlay, world->registry(), component_schemas());
     renderer.context->present();
     ++number;

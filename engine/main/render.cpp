@@ -11,7 +11,7 @@
 #include "engine/main/renderer.hpp"
 #include "engine/main/stats.hpp"
 #include "engine/main/world.hpp"
-#include "systems/rainfall/stats.hpp"
+#include "systems/rainfall/passes.hpp"
 
 namespace petrichor {
 namespace {
@@ -32,7 +32,7 @@ struct Job {
 };
 
 // What the call leaves open the script decides, and what it leaves open has a default.
-Result<Job> plan(const RenderOptions& options, const World& world, bool is_script) {
+Result<Job> plan(const RenderOptions& options, const World& world) {
   const Cinematic& said = world.cinematic();
   Job job;
   job.width = options.width ? options.width : said.size_px ? said.size_px->x : 1280;
@@ -46,7 +46,6 @@ Result<Job> plan(const RenderOptions& options, const World& world, bool is_scrip
     const bool film = job.frames.end - job.frames.begin > 1;
     out = fs::path("out") / (options.subject.subject.stem().string() + (film ? ".mp4" : ".png"));
   }
-  (void)is_script;
   auto target = record_target(out, job.frames.end - job.frames.begin);
   if (!target) return tl::unexpected(target.error());
   job.target = *target;
@@ -63,7 +62,7 @@ Result<void> render(const RenderOptions& options) {
   auto world_opened = World::open(options.subject, renderer.scene.get());
   if (!world_opened) return tl::unexpected(world_opened.error());
   World& world = **world_opened;
-  const auto job = plan(options, world, true);
+  const auto job = plan(options, world);
   if (!job) return tl::unexpected(job.error());
   if (auto loaded = load_render_script(renderer, world.render_script()); !loaded) return loaded;
   auto recorder = make_recorder(job->target, job->width, job->height, job->fps);
@@ -101,11 +100,14 @@ Result<void> render(const RenderOptions& options) {
       } else {
         stats.add(renderer.timer->collect());
       }
-      drops_drawn = rain_stats().drops_drawn;
+      drops_drawn = rain_stats(frame).drops_drawn;
     }
     Picture recorded{job->width, job->height, {}, {}};
     if (linear) {
-      read_picture(*renderer.graph->linear_output(), floats);
+      const Texture* light = renderer.graph->linear_output();
+      if (!light) return failure(fmt::format("{}: has no linear_output, which .exr needs", world.render_script().string()));
+      read_picture(*light, floats);
+      for (float& value : floats) value *= frame.uniforms.lens.w;  // exposed: 1 is the picture's white
       recorded.rgba32f = floats;
     } else {
       read_picture(**picture, bytes);
