@@ -45,7 +45,7 @@ std::vector<Schema> make_schemas() {
            field<&Emitter::minimum_diameter_mm>("minimum_diameter_mm", "mm", {0.1, 6}, "Smallest drop drawn singly."),
            field<&Emitter::maximum_diameter_mm>("maximum_diameter_mm", "mm", {0.2, 8}, "Largest drop."),
            field<&Emitter::drawn_distance_m>("drawn_distance_m", "m", {0, 500}, "Farther drops become extinction and airlight."),
-           field<&Emitter::maximum_drops>("maximum_drops", "", {0, 400000000}, "Budget of drops; the drawn distance shrinks to fit."),
+           field<&Emitter::maximum_drops>("maximum_drops", "", {0, 400000000}, "Budget of drops, to which the drawn distance shrinks; 0: what the device affords."),
            field<&Emitter::seed>("seed", "", {0, 4294967295.0}, "Which rain of all possible rains.")}),
       schema<Wind>("wind", "Mean wind and gusts.",
                    {field<&Wind::velocity_mps>("velocity_mps", "m/s", {-80, 80}, "Mean wind."),

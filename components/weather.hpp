@@ -15,7 +15,7 @@ struct Emitter {
   float minimum_diameter_mm = 0.5f;
   float maximum_diameter_mm = 6.0f;
   float drawn_distance_m = 30.0f;       // drops farther than this become extinction and airlight
-  std::int32_t maximum_drops = 4000000; // a budget: the distance shrinks until the drawn drops fit
+  std::int32_t maximum_drops = 0;       // a budget: the distance shrinks until the drawn drops fit; 0: what the device affords
   std::uint32_t seed = 1;
 };
 

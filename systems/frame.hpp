@@ -71,6 +71,7 @@ struct Frame {
   std::uint64_t geometry_version = 0;
   std::uint64_t lights_version = 0;
   std::optional<FrameRain> rain;  // absent, or its rate 0: no rain pass runs
+  std::int32_t affordable_drops = 4000000;  // for an emitter that names no budget of its own
   GpuScene* scene = nullptr;
   FrameUniforms uniforms{};       // filled last, by finish_frame (systems/frame_gpu.hpp)
 };

@@ -71,6 +71,7 @@ struct Reloader {
       auto scene = std::make_unique<GpuScene>();
       if (auto again = World::open(options.subject, scene.get())) {
         world = std::move(*again);
+        world->set_affordable_drops(affordable_drops(renderer.device));
         renderer.scene = std::move(scene);
         time_s = 0.0;
       } else {
@@ -104,6 +105,7 @@ Result<void> play(const PlayOptions& options) {
   auto world_opened = World::open(call.subject, renderer.scene.get());
   if (!world_opened) return tl::unexpected(world_opened.error());
   std::unique_ptr<World> world = std::move(*world_opened);
+  world->set_affordable_drops(affordable_drops(renderer.device));
   if (auto loaded = load_render_script(renderer, world->render_script()); !loaded) return loaded;
 
   Interface interface(renderer.context->native_window());

@@ -62,6 +62,7 @@ Result<void> render(const RenderOptions& options) {
   auto world_opened = World::open(options.subject, renderer.scene.get());
   if (!world_opened) return tl::unexpected(world_opened.error());
   World& world = **world_opened;
+  world.set_affordable_drops(affordable_drops(renderer.device));
   const auto job = plan(options, world);
   if (!job) return tl::unexpected(job.error());
   if (auto loaded = load_render_script(renderer, world.render_script()); !loaded) return loaded;

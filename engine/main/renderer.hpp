@@ -34,6 +34,10 @@ Result<void> load_render_script(Renderer&, const std::filesystem::path& script);
 // Draws the frame; the texture is the finished picture (sRGB-encoded RGBA8), valid until the next call.
 Result<const Texture*> draw(Renderer&, Frame&, bool profile);
 
+// How many drops the device draws in a share of a frame that leaves room for the city: measured figures are in
+// docs/performance.md.
+std::int32_t affordable_drops(const DeviceInfo&);
+
 // Rows from the bottom, RGBA.
 void read_picture(const Texture&, std::vector<std::uint8_t>& rgba8);
 void read_picture(const Texture&, std::vector<float>& rgba32f);

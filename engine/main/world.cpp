@@ -185,6 +185,7 @@ void World::extract(Frame& frame, std::uint64_t number, double time_s, int width
   frame.width = width;
   frame.height = height;
   frame.scene = scene_;
+  frame.affordable_drops = affordable_drops_;
   SystemContext now = context();
   now.time_s = time_s;
   now.interpolation = std::clamp(1.0 - (static_cast<double>(tick_) - time_s / simulation_step_s), 0.0, 1.0);

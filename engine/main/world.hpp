@@ -29,6 +29,8 @@ class World {
   Result<void> advance_to(double time_s, const PlayerInput& input = {});
   // The state at time_s (at most one tick before the newest), for frame `number` of width x height pixels.
   void extract(Frame&, std::uint64_t number, double time_s, int width, int height);
+  // The budget of drops for emitters that name none. Part of the picture: the same on every run on a device.
+  void set_affordable_drops(std::int32_t drops) { affordable_drops_ = drops; }
 
   Registry& registry() { return registry_; }
   ScriptHost& script() { return *script_; }
@@ -53,6 +55,7 @@ class World {
   std::unique_ptr<ScriptHost> script_;
   GpuScene* scene_;
   std::uint32_t seed_;
+  std::int32_t affordable_drops_ = 4000000;
   std::int64_t tick_ = -1;  // the newest simulated tick
 };
 

@@ -125,7 +125,9 @@ void extract_rainfall(const Registry& registry, Frame& frame, double time_s) {
       if (!any || entity_index(e) < entity_index(first)) first = e, wind = found, any = true;
     });
   }
-  frame.rain = make_frame_rain(*emitter, usable ? motion->wind : start_rain_motion(*emitter, wind), frame.camera,
+  Emitter budgeted = *emitter;
+  if (budgeted.maximum_drops == 0) budgeted.maximum_drops = frame.affordable_drops;
+  frame.rain = make_frame_rain(budgeted, usable ? motion->wind : start_rain_motion(*emitter, wind), frame.camera,
                                frame.width, frame.height, time_s);
 }
 
