@@ -32,7 +32,7 @@ struct ScriptHost::Impl {
   script::Sandbox sandbox;
   script::Timeline timeline;
   Cinematic cinematic;
-  FieldPlace name, position, orientation, field_of_view;
+  FieldPlace name, position, orientation, field_of_view, camera_active;
   std::vector<script::Pin> pins;
   Result<void> opened;  // whether the bindings could be set up within the memory cap
 };

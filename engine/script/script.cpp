@@ -69,6 +69,7 @@ ScriptHost::Impl::Impl(Registry& r, std::span<const Schema> s, ScriptOptions o)
   position = script::place_of(schemas, options.names.position);
   orientation = script::place_of(schemas, options.names.orientation);
   field_of_view = script::place_of(schemas, options.names.field_of_view);
+  camera_active = script::place_of(schemas, options.names.camera_active);
   opened = sandbox.protect([&](lua_State* state) {
     script::open_bindings(state);
     script::set_arguments(state, options);

@@ -48,6 +48,7 @@ struct ScriptNames {
   std::string position = "transform.position_m";
   std::string orientation = "transform.orientation";
   std::string field_of_view = "camera.vertical_fov_deg";
+  std::string camera_active = "camera.active";
 };
 
 struct ScriptOptions {

@@ -261,7 +261,12 @@ int camera_path(lua_State* state) {
   } else {
     const auto cameras = host.field_of_view.schema->entities(host.registry);
     if (cameras.empty()) raise(state, "camera.path: there is no camera; world.spawn{camera={}} makes one");
-    camera = cameras.front();
+    const auto is_active = [&](Entity e) {
+      const void* component = host.camera_active.schema ? host.camera_active.schema->find(host.registry, e) : nullptr;
+      return component && read_field(*host.camera_active.field, component) == json(true);
+    };
+    const auto active = std::find_if(cameras.begin(), cameras.end(), is_active);
+    camera = active == cameras.end() ? cameras.front() : *active;
   }
   lua_pop(state, 1);
   Timeline& timeline = check_can_wait(state, "camera.path");
@@ -355,7 +360,7 @@ constexpr Binding bindings[] = {
     {"", "emit", "emit(event, ...) -> number", "Tells everyone who listens, with these values; gives how many they are.", guarded<emit_event>},
     {"", "wait_for", "wait_for(event) -> ...", "Goes on when the event is emitted, with the values it brings.", guarded<wait_for>},
     {"handler", "off", "handler:off()", "Stops listening.", guarded<handler_off>},
-    {"camera", "path", "camera.path{ {time_s=0, position={...}, target={...}, fov=50}, ..., camera=entity }", "Moves the camera (the first one, unless given) smoothly through the keys, whose times count from now, and goes on when it is through. `target` and `fov` may be left out.", guarded<camera_path>},
+    {"camera", "path", "camera.path{ {time_s=0, position={...}, target={...}, fov=50}, ..., camera=entity }", "Moves the camera (the first active one, unless given) smoothly through the keys, whose times count from now, and goes on when it is through. `target` and `fov` may be left out.", guarded<camera_path>},
     {"", "cinematic", "cinematic{duration_s=10, fps=24, size={640, 360}, render=\"scripts/render/city.lua\"}", "Declares how the script wants to be filmed; the command line overrides it.", guarded<cinematic>},
 };
 

@@ -257,6 +257,12 @@ TEST_F(TimelineTest, CameraPathsAreAFunctionOfTime) {
   }
 }
 
+TEST_F(TimelineTest, CameraPathsTakeTheActiveCameraOrTheGivenOne) {
+  expect_ok("a = world.spawn{camera={active=false}} b = world.spawn{camera={}} "
+            "camera.path{{time_s=0, position={1, 0, 0}}} camera.path{camera=a, {time_s=0, position={2, 0, 0}}} "
+            "assert(b.transform.position_m.x == 1 and a.transform.position_m.x == 2)");
+}
+
 TEST_F(TimelineTest, CameraPathErrors) {
   EXPECT_CONTAINS(error_of("camera.path{{time_s=0, position={0,0,0}}}"), "no camera");
   const std::string spawn = "world.spawn{camera={}} ";

@@ -1,0 +1,21 @@
+-- The town at night, with its sky and its weather, as other scripts want it:
+--   local city = require("scenes.city")
+--   local night = city.load("drizzle")   -- night.model, night.sky, night.weather
+local weather = require("lib.weather")
+
+local city = {}
+
+function city.load(weather_name)
+  local model = world.model("content/city.glb")
+  local sky = world.spawn {
+    name = "sky",
+    sky = {
+      zenith_cd_m2 = { 0.004, 0.006, 0.012 },
+      horizon_cd_m2 = { 0.05, 0.04, 0.03 },  -- sodium lamps under low cloud
+      glow_height = 0.25,
+    },
+  }
+  return { model = model, sky = sky, weather = weather.spawn(weather_name or "rain") }
+end
+
+return city
