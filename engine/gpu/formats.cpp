@@ -39,7 +39,9 @@ constexpr FormatInfo kFormats[] = {
 
 }  // namespace
 
-std::span<const FormatInfo> known_formats() { return kFormats; }
+std::span<const FormatInfo> known_formats() {
+  return kFormats;
+}
 
 const FormatInfo* find_format(GLenum internal_format) {
   for (const FormatInfo& info : kFormats) {

@@ -18,7 +18,7 @@ struct FormatInfo {
 };
 
 std::span<const FormatInfo> known_formats();
-const FormatInfo* find_format(GLenum internal_format);    // null: unknown here
+const FormatInfo* find_format(GLenum internal_format);  // null: unknown here
 const FormatInfo* find_format(std::string_view name);
 
 }  // namespace petrichor

@@ -8,12 +8,24 @@
 
 namespace petrichor {
 
-void delete_buffer(GLuint id) { glDeleteBuffers(1, &id); }
-void delete_texture(GLuint id) { glDeleteTextures(1, &id); }
-void delete_framebuffer(GLuint id) { glDeleteFramebuffers(1, &id); }
-void delete_vertex_array(GLuint id) { glDeleteVertexArrays(1, &id); }
-void delete_program(GLuint id) { glDeleteProgram(id); }
-void delete_sampler(GLuint id) { glDeleteSamplers(1, &id); }
+void delete_buffer(GLuint id) {
+  glDeleteBuffers(1, &id);
+}
+void delete_texture(GLuint id) {
+  glDeleteTextures(1, &id);
+}
+void delete_framebuffer(GLuint id) {
+  glDeleteFramebuffers(1, &id);
+}
+void delete_vertex_array(GLuint id) {
+  glDeleteVertexArrays(1, &id);
+}
+void delete_program(GLuint id) {
+  glDeleteProgram(id);
+}
+void delete_sampler(GLuint id) {
+  glDeleteSamplers(1, &id);
+}
 
 Buffer make_buffer(std::size_t bytes, const void* data) {
   GLuint id = 0;

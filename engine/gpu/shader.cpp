@@ -20,8 +20,9 @@ struct Stage {
   GLenum type;
 };
 constexpr Stage kStages[] = {
-    {".comp.glsl", GL_COMPUTE_SHADER},  {".vert.glsl", GL_VERTEX_SHADER},        {".frag.glsl", GL_FRAGMENT_SHADER},
-    {".geom.glsl", GL_GEOMETRY_SHADER}, {".tesc.glsl", GL_TESS_CONTROL_SHADER}, {".tese.glsl", GL_TESS_EVALUATION_SHADER},
+    {".comp.glsl", GL_COMPUTE_SHADER},      {".vert.glsl", GL_VERTEX_SHADER},
+    {".frag.glsl", GL_FRAGMENT_SHADER},     {".geom.glsl", GL_GEOMETRY_SHADER},
+    {".tesc.glsl", GL_TESS_CONTROL_SHADER}, {".tese.glsl", GL_TESS_EVALUATION_SHADER},
 };
 
 // Changes with every save; size too, for file systems with coarse times.
@@ -72,7 +73,9 @@ std::string info_log(GLuint object, bool is_program) {
   return log;
 }
 
-void delete_shader(GLuint id) { glDeleteShader(id); }
+void delete_shader(GLuint id) {
+  glDeleteShader(id);
+}
 
 Result<GLuint> build(const ShaderKey& key, std::vector<Dependency>& dependencies) {
   GlId<delete_program> program(glCreateProgram());
@@ -82,9 +85,10 @@ Result<GLuint> build(const ShaderKey& key, std::vector<Dependency>& dependencies
     const auto stage = std::find_if(std::begin(kStages), std::end(kStages),
                                     [&](const Stage& s) { return std::string_view(name).ends_with(s.extension); });
     if (stage == std::end(kStages)) {
-      return failure(fmt::format("{}: a shader's name ends in .comp.glsl, .vert.glsl, .frag.glsl, .geom.glsl, .tesc.glsl "
-                                 "or .tese.glsl",
-                                 name));
+      return failure(
+          fmt::format("{}: a shader's name ends in .comp.glsl, .vert.glsl, .frag.glsl, .geom.glsl, .tesc.glsl "
+                      "or .tese.glsl",
+                      name));
     }
     std::vector<SourceFile> files;
     auto source = read_shader(name, key.defines, &files);
@@ -180,20 +184,33 @@ bool Program::set_numbers(std::string_view uniform, std::span<const double> valu
   }
   const std::size_t n = values.size();
   switch (uniform_type(uniform)) {
-    case GL_FLOAT: return n == 1 && (glProgramUniform1fv(id_, at, 1, f.data()), true);
-    case GL_FLOAT_VEC2: return n == 2 && (glProgramUniform2fv(id_, at, 1, f.data()), true);
-    case GL_FLOAT_VEC3: return n == 3 && (glProgramUniform3fv(id_, at, 1, f.data()), true);
-    case GL_FLOAT_VEC4: return n == 4 && (glProgramUniform4fv(id_, at, 1, f.data()), true);
+    case GL_FLOAT:
+      return n == 1 && (glProgramUniform1fv(id_, at, 1, f.data()), true);
+    case GL_FLOAT_VEC2:
+      return n == 2 && (glProgramUniform2fv(id_, at, 1, f.data()), true);
+    case GL_FLOAT_VEC3:
+      return n == 3 && (glProgramUniform3fv(id_, at, 1, f.data()), true);
+    case GL_FLOAT_VEC4:
+      return n == 4 && (glProgramUniform4fv(id_, at, 1, f.data()), true);
     case GL_INT:
-    case GL_BOOL: return n == 1 && (glProgramUniform1iv(id_, at, 1, i.data()), true);
-    case GL_INT_VEC2: return n == 2 && (glProgramUniform2iv(id_, at, 1, i.data()), true);
-    case GL_INT_VEC3: return n == 3 && (glProgramUniform3iv(id_, at, 1, i.data()), true);
-    case GL_INT_VEC4: return n == 4 && (glProgramUniform4iv(id_, at, 1, i.data()), true);
-    case GL_UNSIGNED_INT: return n == 1 && (glProgramUniform1uiv(id_, at, 1, u.data()), true);
-    case GL_UNSIGNED_INT_VEC2: return n == 2 && (glProgramUniform2uiv(id_, at, 1, u.data()), true);
-    case GL_UNSIGNED_INT_VEC3: return n == 3 && (glProgramUniform3uiv(id_, at, 1, u.data()), true);
-    case GL_UNSIGNED_INT_VEC4: return n == 4 && (glProgramUniform4uiv(id_, at, 1, u.data()), true);
-    default: return false;
+    case GL_BOOL:
+      return n == 1 && (glProgramUniform1iv(id_, at, 1, i.data()), true);
+    case GL_INT_VEC2:
+      return n == 2 && (glProgramUniform2iv(id_, at, 1, i.data()), true);
+    case GL_INT_VEC3:
+      return n == 3 && (glProgramUniform3iv(id_, at, 1, i.data()), true);
+    case GL_INT_VEC4:
+      return n == 4 && (glProgramUniform4iv(id_, at, 1, i.data()), true);
+    case GL_UNSIGNED_INT:
+      return n == 1 && (glProgramUniform1uiv(id_, at, 1, u.data()), true);
+    case GL_UNSIGNED_INT_VEC2:
+      return n == 2 && (glProgramUniform2uiv(id_, at, 1, u.data()), true);
+    case GL_UNSIGNED_INT_VEC3:
+      return n == 3 && (glProgramUniform3uiv(id_, at, 1, u.data()), true);
+    case GL_UNSIGNED_INT_VEC4:
+      return n == 4 && (glProgramUniform4uiv(id_, at, 1, u.data()), true);
+    default:
+      return false;
   }
 }
 

@@ -88,8 +88,8 @@ class Reader {
         continue;
       }
       if (is_directive && directive == "include") {
-        const std::size_t open = std::count_if(conditions.begin(), conditions.end(),
-                                               [](Condition c) { return c == Condition::ordinary; });
+        const std::size_t open =
+            std::count_if(conditions.begin(), conditions.end(), [](Condition c) { return c == Condition::ordinary; });
         if (auto done = include(rest, file, number, depth_of_conditions + static_cast<int>(open)); !done) return done;
         line_marker(number + 1, index);
       } else if (is_directive && directive == "version") {
@@ -106,8 +106,8 @@ class Reader {
         output += '\n';
       }
       if (output.size() > kMaxSourceBytes) {
-        return failure(fmt::format("{}:{}: more than {} MiB of text after includes", file.name, number,
-                                   kMaxSourceBytes >> 20));
+        return failure(
+            fmt::format("{}:{}: more than {} MiB of text after includes", file.name, number, kMaxSourceBytes >> 20));
       }
     }
     stack_.pop_back();
@@ -154,7 +154,8 @@ class Reader {
     SourceFile file{name, {}};
     if (auto found = find_data(name)) {
       file.path = *found;
-    } else if (std::filesystem::path beside = from.path.parent_path() / name; std::filesystem::is_regular_file(beside)) {
+    } else if (std::filesystem::path beside = from.path.parent_path() / name;
+               std::filesystem::is_regular_file(beside)) {
       file.path = beside;
       file.name = (std::filesystem::path(from.name).parent_path() / name).lexically_normal().generic_string();
     } else {
@@ -219,7 +220,8 @@ Result<ShaderSource> read_shader(std::string_view name, std::span<const std::str
 
 std::string map_shader_log(std::string_view log, std::span<const SourceFile> files) {
   // Mesa 0:12(5): error: ...   NVIDIA 0(12) : error C1008: ...   others ERROR: 0:12: ...
-  static const std::regex pattern(R"(^(?:(ERROR|WARNING): )?(\d{1,6})(?::(\d{1,9})\(\d+\): |\((\d{1,9})\) : |:(\d{1,9}): ))");
+  static const std::regex pattern(
+      R"(^(?:(ERROR|WARNING): )?(\d{1,6})(?::(\d{1,9})\(\d+\): |\((\d{1,9})\) : |:(\d{1,9}): ))");
   std::string out;
   std::istringstream lines{std::string(log)};
   std::string line;

@@ -27,8 +27,8 @@ struct FrameRecord {
 
 struct FrameTimer::Impl {
   std::array<FrameRecord, kFramesInFlight> frames;
-  int next = 0;               // the record begin_frame() takes
-  FrameRecord* now = nullptr;  // null: this frame is not timed
+  int next = 0;                   // the record begin_frame() takes
+  FrameRecord* now = nullptr;     // null: this frame is not timed
   std::vector<std::size_t> open;  // indices into now->spans
 
   std::size_t stamp() {

@@ -9,7 +9,9 @@
 namespace petrichor {
 namespace {
 
-bool is_image(GLenum type) { return type >= GL_IMAGE_1D && type <= GL_UNSIGNED_INT_IMAGE_2D_MULTISAMPLE_ARRAY; }
+bool is_image(GLenum type) {
+  return type >= GL_IMAGE_1D && type <= GL_UNSIGNED_INT_IMAGE_2D_MULTISAMPLE_ARRAY;
+}
 
 bool is_sampler(GLenum type) {
   switch (type) {
@@ -21,8 +23,10 @@ bool is_sampler(GLenum type) {
     case GL_INT_SAMPLER_2D:
     case GL_INT_SAMPLER_2D_ARRAY:
     case GL_UNSIGNED_INT_SAMPLER_2D:
-    case GL_UNSIGNED_INT_SAMPLER_2D_ARRAY: return true;
-    default: return false;
+    case GL_UNSIGNED_INT_SAMPLER_2D_ARRAY:
+      return true;
+    default:
+      return false;
   }
 }
 

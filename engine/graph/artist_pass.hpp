@@ -13,8 +13,8 @@ namespace petrichor {
 struct ArtistPass {
   std::string id;
   std::string file;
-  std::vector<std::string> samplers;                   // uniform names, each also the name of a read slot
-  std::vector<std::string> images;                     // likewise, of write and modify slots
+  std::vector<std::string> samplers;                    // uniform names, each also the name of a read slot
+  std::vector<std::string> images;                      // likewise, of write and modify slots
   std::map<std::string, std::vector<double>> uniforms;  // 1 to 4 numbers each
 };
 

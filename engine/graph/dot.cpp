@@ -19,7 +19,7 @@ std::string escaped(std::string_view text) {
 }
 
 std::string extent(const ResourceDesc& desc) {
-  std::string text = desc.width ? fmt::format("{}x{}", desc.width, desc.height)
+  std::string text = desc.width          ? fmt::format("{}x{}", desc.width, desc.height)
                      : desc.scale == 1.0 ? "full size"
                                          : fmt::format("{:g} of full size", desc.scale);
   if (desc.layers) text += fmt::format(", {} layers", desc.layers);

@@ -48,6 +48,16 @@ void reset_gl_state() {
   glBindVertexArray(0);
 }
 
+std::vector<std::string> artist_files(const Table& table) {
+  std::vector<std::string> files;
+  for (const PassNode& pass : table.passes) {
+    if (!pass.own_offer) continue;
+    for (const auto& [name, key] : pass.own_offer->shaders)
+      files.insert(files.end(), key.files.begin(), key.files.end());
+  }
+  return files;
+}
+
 // What load_table makes and swaps in as a whole, so that a failure leaves the old one standing.
 struct Compiled {
   Table table;
@@ -62,13 +72,14 @@ struct Graph::Impl {
   ShaderLibrary& shaders;
   std::vector<PassOffer> offers;
   std::optional<Compiled> compiled;
+  std::vector<std::string> failed_files;  // artist shaders of the last table, where it failed to load
 
   // The current plan and what it was made for.
   std::optional<Plan> plan;
   std::vector<bool> wanted;
   int width = 0, height = 0;
 
-  std::vector<Texture> pool;  // one a physical of the plan
+  std::vector<Texture> pool;         // one a physical of the plan
   std::map<int, History> histories;  // by resource
   std::map<int, Persistent> persistents;
   std::map<std::vector<GLuint>, Framebuffer> framebuffers;  // colour ids, then the depth id
@@ -123,7 +134,8 @@ struct Graph::Impl {
 
   const Texture& texture_of(const Storage& storage) {
     switch (storage.kind) {
-      case StorageKind::transient: return pool[storage.physical];
+      case StorageKind::transient:
+        return pool[storage.physical];
       case StorageKind::history_now: {
         History& history = histories.at(storage.resource);
         return history.textures[history.now];
@@ -132,7 +144,8 @@ struct Graph::Impl {
         History& history = histories.at(storage.resource);
         return history.textures[1 - history.now];
       }
-      case StorageKind::persistent: break;
+      case StorageKind::persistent:
+        break;
     }
     return persistents.at(storage.resource).texture;
   }
@@ -187,7 +200,9 @@ const Texture& PassContext::texture(std::string_view slot) const {
   return storage ? impl->graph->texture_of(*storage) : none;
 }
 
-bool PassContext::has(std::string_view slot) const { return impl->storage(slot) != nullptr; }
+bool PassContext::has(std::string_view slot) const {
+  return impl->storage(slot) != nullptr;
+}
 
 bool PassContext::fresh(std::string_view slot) const {
   const Storage* storage = impl->storage(slot);
@@ -288,6 +303,7 @@ Result<void> Graph::load_table(const nlohmann::json& json, std::string_view sour
   if (!table) return tl::unexpected(table.error());
   Compiled compiled;
   compiled.table = *std::move(table);
+  impl_->failed_files = artist_files(compiled.table);
   for (const PassNode& pass : compiled.table.passes) {
     auto& programs = compiled.programs.emplace_back();
     const auto fail = [&](const std::string& message) {
@@ -304,12 +320,14 @@ Result<void> Graph::load_table(const nlohmann::json& json, std::string_view sour
   }
   impl_->drop_textures();
   impl_->compiled = std::move(compiled);
+  impl_->failed_files.clear();
   return {};
 }
 
 Result<const Texture*> Graph::execute(const Frame& frame, int width, int height, FrameTimer& timer) {
   if (!impl_->compiled) return failure("The frame has no passes yet: no render table was loaded.");
-  if (width <= 0 || height <= 0) return failure(fmt::format("An image of {}x{} pixels cannot be drawn.", width, height));
+  if (width <= 0 || height <= 0)
+    return failure(fmt::format("An image of {}x{} pixels cannot be drawn.", width, height));
   std::vector<bool> wanted;
   for (const PassNode& pass : impl_->compiled->table.passes) {
     wanted.push_back(!pass.offer->wanted || pass.offer->wanted(frame));
@@ -333,7 +351,9 @@ const Texture* Graph::linear_output() const {
   return &impl_->texture_of(impl_->plan->storages[impl_->plan->linear_output_storage]);
 }
 
-void Graph::reset() { impl_->drop_textures(); }
+void Graph::reset() {
+  impl_->drop_textures();
+}
 
 std::vector<PassReport> Graph::report() const {
   std::vector<PassReport> reports;
@@ -354,15 +374,17 @@ std::string Graph::dot() const {
   return write_dot(table, make_plan(table, std::vector<bool>(table.passes.size(), true), 1280, 720));
 }
 
-std::span<const PassOffer> Graph::offers() const { return impl_->offers; }
+std::span<const PassOffer> Graph::offers() const {
+  return impl_->offers;
+}
 
 std::vector<std::string> Graph::files() const {
-  std::vector<std::string> files;
-  if (!impl_->compiled) return files;
-  for (const PassNode& pass : impl_->compiled->table.passes) {
-    if (!pass.own_offer) continue;
-    for (const auto& [name, key] : pass.own_offer->shaders) files.insert(files.end(), key.files.begin(), key.files.end());
+  std::vector<std::string> files = impl_->failed_files;
+  if (impl_->compiled) {
+    for (std::string& file : artist_files(impl_->compiled->table)) files.push_back(std::move(file));
   }
+  std::sort(files.begin(), files.end());
+  files.erase(std::unique(files.begin(), files.end()), files.end());
   return files;
 }
 

@@ -24,28 +24,32 @@ struct Frame;  // systems/frame.hpp: what the passes draw; the graph only hands 
 enum class SlotAccess { read, write, modify };  // modify: reads what was there and adds to it
 
 struct Slot {
-  std::string name;         // "depth"
+  std::string name;  // "depth"
   SlotAccess access;
-  bool optional = false;    // a read slot that may stay unconnected, or whose writers may all be culled
+  // May stay unconnected. Ask has(): an optional read is empty where its writers are all culled, an optional write or
+  // modify where nobody reads what it would add.
+  bool optional = false;
 };
 
 struct PassContext;
 
 struct PassOffer {
-  std::string name;                                  // "rain_field"
-  std::string meaning;                               // one line for docs and `info`
+  std::string name;     // "rain_field"
+  std::string meaning;  // one line for docs and `info`
   std::vector<Slot> slots;
   std::unordered_map<std::string, double> parameters;  // name -> default; the script may override
   std::unordered_map<std::string, ShaderKey> shaders;  // loaded before the first execution
-  std::function<bool(const Frame&)> wanted;          // empty: always. False: nothing in the scene asks for it
+  std::function<bool(const Frame&)> wanted;            // empty: always. False: nothing in the scene asks for it
   std::function<void(PassContext&)> execute;
-  bool side_effect = false;  // runs also where nobody reads what it writes. So does a pass without write or modify slots.
-  std::function<Result<void>(const Program&)> check;  // after the shaders are loaded; empty: nothing to check
+  // Runs also where nobody reads what it writes. So does a pass without write or modify slots.
+  bool side_effect = false;
+  // Looks at each shader once it is loaded; an error fails the table. Empty: nothing to check.
+  std::function<Result<void>(const Program&)> check;
 };
 
 struct PassContext {
   const Frame& frame;
-  int width;   // of the output image, pixels
+  int width;  // of the output image, pixels
   int height;
 
   // The texture in a slot. Asserts on names that the offer did not declare.
@@ -57,7 +61,7 @@ struct PassContext {
   const Program& program(std::string_view name) const;
   float parameter(std::string_view name) const;
 
-  void bind_texture(int unit, std::string_view slot) const;                      // glBindTextureUnit
+  void bind_texture(int unit, std::string_view slot) const;                              // glBindTextureUnit
   void bind_image(int unit, std::string_view slot, GLenum access, int level = 0) const;  // glBindImageTexture
   // A framebuffer over the named slots' textures, cached; depth "" for none. Bound, viewport set.
   void bind_framebuffer(std::span<const std::string_view> colour_slots, std::string_view depth_slot) const;
@@ -72,21 +76,46 @@ struct PassReport {
   std::string reason;  // why it was culled: "nobody reads bloom", "no component asks for it"
 };
 
-// Resources a script may declare without describing them.
-//   table.resources.NAME = { format = "rgba16f", scale = 1.0 | width/height, history = true, mips = n,
-//                            persistent = true }
-// persistent: the texture is its own (never aliased) and keeps its content between frames, so that a pass may
-// decide to leave it as it is (cached shadow and occlusion maps). It can stand beside a fixed width/height.
-// A read of "previous:NAME" is last frame's content of a history resource (cleared on the first frame).
-// Script passes: { pass = "name", SLOT = "resource", ..., parameters = {...} }, or an artist's own compute
-// shader: { compute = "file.comp.glsl", name = "...", read = { SAMPLER = "resource" },
-//           write = { IMAGE = "resource" }, parameters = { uniform = value } }. A wrong table is an error with its path.
+// The render table, as the script returns it:
+//
+//   return {
+//     resources = { NAME = { format = "rgba16f", ... }, ... },
+//     passes = { { "gbuffer", depth = "depth", ... }, ... },     -- in order of execution
+//     output = "picture",                                        -- the resource to show
+//     linear_output = "light",                                   -- optional: scene-linear light, for EXR
+//   }
+//
+// A resource: format (engine/gpu/formats.cpp lists them), and
+//   scale = 1.0               of the output size, rounded up; or width and height in pixels
+//   mips = 1                  levels; 0: down to one pixel
+//   layers = n                a 2D array
+//   clear = {r, g, b, a}      what it holds until a pass writes it, every frame; one number means all four.
+//                             Without it the content of a fresh texture is undefined: write every pixel.
+//   history = true            "previous:NAME" reads last frame's content; cleared on the first frame, after a frame in
+//                             which nothing wrote it, after a reload, and when the size changes
+//   persistent = true         the texture is its own and keeps its content between frames (cached maps, sums); a pass
+//                             may then leave it as it is, and reading or modifying before this frame's write is fine
+//
+// A pass: { "name" or pass = "name", SLOT = "resource", ..., parameters = { name = number }, id = "...",
+// enabled = true }. id is needed where one pass stands twice; timings and reports use it.
+// An artist's own: { compute = "file.comp.glsl", name = "...", read = { SAMPLER = "resource" },
+// write = { IMAGE = "resource" }, modify = { IMAGE = "resource" }, parameters = { UNIFORM = number or list } }; one
+// invocation a pixel of the largest image, `uniform ivec2 u_size` is its size.
+//
+// write begins a new version of a resource and modify goes on with the version before, so a pass may read and write one
+// name. A pass that is not wanted is as if it were not in the table: a modify passes on what it found, an optional read
+// finds has() false, a required read of what nobody wrote culls the reader too. Of the rest run the passes that the
+// output needs, and those with effects of their own. A wrong table is an error with its place in it.
+//
+// Each pass starts from the same GL state: no blending, culling, depth or scissor test, all masks on, the viewport of
+// the output, no framebuffer and no vertex array bound. Bound buffers (the frame's uniforms at 0) stay. A full
+// memory barrier follows each pass; within a pass barriers are the pass's own affair.
 class Graph {
  public:
   Graph(ShaderLibrary&, std::vector<PassOffer> offers);
   ~Graph();
 
-  // Reads a render table (see docs/reference.md). On failure the graph keeps what it had before.
+  // Reads a render table and loads its shaders. On failure the graph keeps what it had before.
   Result<void> load_table(const nlohmann::json& table, std::string_view source);
   // Runs the passes that the frame asks for; returns the texture the table names as output. Valid until the
   // next execute. A failure (shader, missing writer) names pass and resource.
@@ -100,7 +129,9 @@ class Graph {
   std::vector<PassReport> report() const;  // as of the last execute
   std::string dot() const;                 // Graphviz, culled passes dimmed
   std::span<const PassOffer> offers() const;
-  std::vector<std::string> files() const;  // artist shaders, for the reload watch
+  // Artist shaders, under the data roots, of the table that runs and of the last one that failed to load: when one of
+  // these changes after a failure, load the table again. (Of a table that runs, ShaderLibrary reloads them.)
+  std::vector<std::string> files() const;
 
   struct Impl;
 

@@ -42,7 +42,7 @@ struct Plan {
   std::vector<TextureKey> physicals;  // transient textures, each shared by storages with disjoint lifetimes
   int output_storage = -1;
   int linear_output_storage = -1;  // -1: none, or nothing that runs writes it
-  std::string error;  // why there is no picture; empty where there is one
+  std::string error;               // why there is no picture; empty where there is one
 };
 
 TextureKey texture_key(const ResourceDesc&, int width, int height);

@@ -26,11 +26,11 @@ bool is_one_of(std::string_view key, std::span<const std::string_view> keys) {
 }
 
 // target = the value of a Result, or its error to the caller.
-#define PETRICHOR_TAKE(target, expression)                          \
-  do {                                                              \
-    auto taken = (expression);                                      \
-    if (!taken) return tl::unexpected(std::move(taken.error()));    \
-    target = *std::move(taken);                                     \
+#define PETRICHOR_TAKE(target, expression)                       \
+  do {                                                           \
+    auto taken = (expression);                                   \
+    if (!taken) return tl::unexpected(std::move(taken.error())); \
+    target = *std::move(taken);                                  \
   } while (false)
 
 Result<ResourceDesc> read_resource(const Place& at, const std::string& name, const json& value) {
@@ -87,7 +87,8 @@ Result<ResourceDesc> read_resource(const Place& at, const std::string& name, con
 
 class TableReader {
  public:
-  TableReader(std::string_view source, std::span<const PassOffer> offers) : root_{std::string(source)}, offers_(offers) {}
+  TableReader(std::string_view source, std::span<const PassOffer> offers)
+      : root_{std::string(source)}, offers_(offers) {}
 
   Result<Table> read(const json& value) {
     if (!value.is_object()) return root_.error("the render script returns a table with resources, passes and output");
@@ -133,8 +134,8 @@ class TableReader {
       if (!node) return tl::unexpected(node.error());
       places_.push_back({fmt::format("{} ({})", here.text, node->id)});
       if (!ids.insert(node->id).second) {
-        return here.error(fmt::format("a second pass \"{}\"; give it an id of its own, as in id = \"{}_2\"", node->id,
-                                      node->id));
+        return here.error(
+            fmt::format("a second pass \"{}\"; give it an id of its own, as in id = \"{}_2\"", node->id, node->id));
       }
       if (auto done = hazards(*node); !done) return tl::unexpected(done.error());
       table_.passes.push_back(*std::move(node));
@@ -182,7 +183,8 @@ class TableReader {
 
   Result<PassNode> offered_pass(const Place& here, const json& value) {
     const auto key = value.contains("pass") ? value.find("pass") : value.find("1");
-    if (key == value.end()) return here.error("names no pass: write { pass = \"name\", ... } or { compute = \"file\", ... }");
+    if (key == value.end())
+      return here.error("names no pass: write { pass = \"name\", ... } or { compute = \"file\", ... }");
     PassNode node;
     PETRICHOR_TAKE(node.id, read_text(here / "pass", *key));
     for (const PassOffer& offer : offers_) {
@@ -205,7 +207,8 @@ class TableReader {
       } else if (k == "parameters") {
         if (auto done = parameters(named / k, v, node); !done) return tl::unexpected(done.error());
       } else if (!is_one_of(k, kPassKeys)) {
-        const auto slot = std::find_if(offer.slots.begin(), offer.slots.end(), [&](const Slot& s) { return s.name == k; });
+        const auto slot =
+            std::find_if(offer.slots.begin(), offer.slots.end(), [&](const Slot& s) { return s.name == k; });
         if (slot == offer.slots.end()) {
           std::vector<std::string_view> known;
           for (const Slot& s : offer.slots) known.push_back(s.name);
@@ -247,7 +250,8 @@ class TableReader {
 
   Result<PassNode> compute_pass(const Place& here, const json& value) {
     for (const auto& [k, v] : value.items()) {
-      if (!is_one_of(k, kComputeKeys)) return unknown(here, "key", k, {std::begin(kComputeKeys), std::end(kComputeKeys)});
+      if (!is_one_of(k, kComputeKeys))
+        return unknown(here, "key", k, {std::begin(kComputeKeys), std::end(kComputeKeys)});
     }
     PassNode node;
     ArtistPass artist;
@@ -309,12 +313,13 @@ class TableReader {
         const SlotAccess x = node.offer->slots[i].access, y = node.offer->slots[j].access;
         if (!writes(x) && !writes(y)) continue;
         const ResourceDesc& desc = table_.resources[a.resource];
-        const bool read_and_write = (x == SlotAccess::read && y == SlotAccess::write) ||
-                                    (y == SlotAccess::read && x == SlotAccess::write);
+        const bool read_and_write =
+            (x == SlotAccess::read && y == SlotAccess::write) || (y == SlotAccess::read && x == SlotAccess::write);
         if (read_and_write && !desc.persistent) continue;
-        return places_.back().error(fmt::format("slots \"{}\" and \"{}\" are both \"{}\", which would be read and written "
-                                                "at once; use two resources",
-                                                node.offer->slots[j].name, node.offer->slots[i].name, desc.name));
+        return places_.back().error(
+            fmt::format("slots \"{}\" and \"{}\" are both \"{}\", which would be read and written "
+                        "at once; use two resources",
+                        node.offer->slots[j].name, node.offer->slots[i].name, desc.name));
       }
     }
     return {};
@@ -354,7 +359,8 @@ class TableReader {
       return here.error(fmt::format("\"{}\" is read before any pass has written it; move the pass down", desc.name));
     });
     if (!done) return done;
-    for (const auto& [key, resource] : {std::pair{"output", table_.output}, std::pair{"linear_output", table_.linear_output}}) {
+    for (const auto& [key, resource] :
+         {std::pair{"output", table_.output}, std::pair{"linear_output", table_.linear_output}}) {
       if (resource < 0 || ever[resource]) continue;
       return at(key).error(fmt::format("no pass writes \"{}\"", table_.resources[resource].name));
     }
@@ -371,7 +377,9 @@ class TableReader {
 
 }  // namespace
 
-bool writes(SlotAccess access) { return access != SlotAccess::read; }
+bool writes(SlotAccess access) {
+  return access != SlotAccess::read;
+}
 
 Result<Table> read_table(const json& table, std::string_view source, std::span<const PassOffer> offers) {
   return TableReader(source, offers).read(table);

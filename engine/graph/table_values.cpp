@@ -8,7 +8,9 @@ namespace petrichor {
 
 using nlohmann::json;
 
-bool is_map(const json& value) { return value.is_object() || (value.is_array() && value.empty()); }
+bool is_map(const json& value) {
+  return value.is_object() || (value.is_array() && value.empty());
+}
 
 tl::unexpected<Error> unknown(const Place& at, std::string_view what, std::string_view name,
                               std::vector<std::string_view> known) {
@@ -45,7 +47,8 @@ Result<std::vector<double>> read_numbers(const Place& at, const json& value) {
   const json list = value.is_array() ? value : json::array({value});
   std::vector<double> out;
   for (const json& item : list) {
-    if (!item.is_number()) return at.error(fmt::format("expected a number or a list of 1 to 4, got {}", item.type_name()));
+    if (!item.is_number())
+      return at.error(fmt::format("expected a number or a list of 1 to 4, got {}", item.type_name()));
     out.push_back(item.get<double>());
   }
   if (out.empty() || out.size() > 4) return at.error(fmt::format("expected 1 to 4 numbers, got {}", out.size()));

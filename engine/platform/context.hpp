@@ -36,7 +36,7 @@ class Context {
   virtual void framebuffer_size(int& width, int& height) const = 0;
   virtual InputState poll() = 0;
   virtual void capture_mouse(bool) = 0;
-  virtual void present() = 0;              // swap buffers
+  virtual void present() = 0;               // swap buffers
   virtual void* native_window() const = 0;  // GLFWwindow*, for the interface's backend
 };
 

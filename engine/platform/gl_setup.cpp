@@ -41,8 +41,8 @@ void on_debug_message(GLenum source, GLenum type, GLuint, GLenum severity, GLsiz
     ++error_count;
     last_error = message;
   }
-  const bool important = type == GL_DEBUG_TYPE_ERROR || severity == GL_DEBUG_SEVERITY_HIGH ||
-                         severity == GL_DEBUG_SEVERITY_MEDIUM;
+  const bool important =
+      type == GL_DEBUG_TYPE_ERROR || severity == GL_DEBUG_SEVERITY_HIGH || severity == GL_DEBUG_SEVERITY_MEDIUM;
   // A fault inside a frame repeats sixty times a second: say it once, and bound what is remembered.
   if (!important || logged.size() > 500 || !logged.insert(message).second) return;
   if (type == GL_DEBUG_TYPE_ERROR) {
@@ -64,7 +64,9 @@ std::string gl_string(GLenum name) {
 
 }  // namespace
 
-int gl_error_count() { return error_count; }
+int gl_error_count() {
+  return error_count;
+}
 
 std::string last_gl_error() {
   std::lock_guard lock(message_mutex);

@@ -21,7 +21,9 @@ std::string glfw_message() {
 }
 
 // glfwInit once, glfwTerminate after the last user: display_available() and windows may overlap.
-bool acquire_glfw(int& users) { return users++ > 0 || glfwInit() == GLFW_TRUE; }
+bool acquire_glfw(int& users) {
+  return users++ > 0 || glfwInit() == GLFW_TRUE;
+}
 void release_glfw(int& users) {
   if (--users == 0) glfwTerminate();
 }
@@ -114,7 +116,8 @@ Result<std::unique_ptr<Context>> make_window_context(const ContextOptions& optio
   std::string missing;
   if (!gl_libraries_present(false, missing)) return failure("No window: " + missing + ".");
   if (!display_variable_set()) {
-    return failure("No window: neither DISPLAY nor WAYLAND_DISPLAY is set. Run in a desktop session, or render headless.");
+    return failure(
+        "No window: neither DISPLAY nor WAYLAND_DISPLAY is set. Run in a desktop session, or render headless.");
   }
   if (!acquire_glfw(glfw_users)) {
     std::string why = glfw_message();

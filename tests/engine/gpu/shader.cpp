@@ -10,7 +10,9 @@ namespace {
 
 using test::DataFolder;
 
-bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+bool has(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
 
 class Shader : public test::GlTest {
  protected:
@@ -53,8 +55,9 @@ TEST_F(Shader, RunsWithDefinesAndUniforms) {
 }
 
 TEST_F(Shader, NumbersFitWhateverTypeTheUniformHas) {
-  data.write("n.comp.glsl", writes("f + i + int(u) + (b ? 1000 : 0) + v.z",
-                                   "uniform float f; uniform int i; uniform uint u; uniform bool b; uniform ivec3 v;\n"));
+  data.write("n.comp.glsl",
+             writes("f + i + int(u) + (b ? 1000 : 0) + v.z",
+                    "uniform float f; uniform int i; uniform uint u; uniform bool b; uniform ivec3 v;\n"));
   const Program* program = *library.load({{"n.comp.glsl"}, {}});
   const auto set = [&](const char* name, std::vector<double> v) { return program->set_numbers(name, v); };
   EXPECT_TRUE(set("f", {1}));
@@ -69,9 +72,10 @@ TEST_F(Shader, NumbersFitWhateverTypeTheUniformHas) {
 }
 
 TEST_F(Shader, DispatchCoversAllInvocations) {
-  data.write("d.comp.glsl",
-             "layout(local_size_x = 8, local_size_y = 4) in;\nlayout(std430, binding = 0) buffer Out { uint value; };\n"
-             "void main() { if (gl_GlobalInvocationID.x < 17u && gl_GlobalInvocationID.y < 5u) atomicAdd(value, 1u); }\n");
+  data.write(
+      "d.comp.glsl",
+      "layout(local_size_x = 8, local_size_y = 4) in;\nlayout(std430, binding = 0) buffer Out { uint value; };\n"
+      "void main() { if (gl_GlobalInvocationID.x < 17u && gl_GlobalInvocationID.y < 5u) atomicAdd(value, 1u); }\n");
   const Program* program = *library.load({{"d.comp.glsl"}, {}});
   EXPECT_EQ(program->group_size(), glm::ivec3(8, 4, 1));
   Buffer out = make_buffer(4);
@@ -87,9 +91,11 @@ TEST_F(Shader, DispatchCoversAllInvocations) {
 
 TEST_F(Shader, IncludesComeInOnceFromRootOrBeside) {
   data.write("lib/one.glsl", "#pragma once\nuint one() { return 1u; }\n");
-  data.write("lib/two.glsl", "#include \"lib/one.glsl\"\n#include \"beside.glsl\"\nuint two() { return one() + one(); }");
+  data.write("lib/two.glsl",
+             "#include \"lib/one.glsl\"\n#include \"beside.glsl\"\nuint two() { return one() + one(); }");
   data.write("lib/beside.glsl", "uint four() { return 4u; }\n");
-  data.write("m.comp.glsl", "#include \"lib/one.glsl\"\n#include \"lib/two.glsl\"\n" + writes("one() + two() + four()"));
+  data.write("m.comp.glsl",
+             "#include \"lib/one.glsl\"\n#include \"lib/two.glsl\"\n" + writes("one() + two() + four()"));
   auto program = library.load({{"m.comp.glsl"}, {}});
   ASSERT_TRUE(program) << program.error().message;
   EXPECT_EQ(result(**program), 7u);
@@ -99,16 +105,19 @@ TEST_F(Shader, AnIncludeUnderAFalseConditionIsThereForALaterOne) {
   data.write("one.glsl", "uint one() { return 1u; }\n");
   data.write("m.comp.glsl",
              "#ifdef NOT_DEFINED\n#include \"one.glsl\"\n#endif\n#include \"one.glsl\"\n#if 1\n#include \"one.glsl\"\n"
-             "#endif\n" + writes("one()"));
+             "#endif\n" +
+                 writes("one()"));
   auto program = library.load({{"m.comp.glsl"}, {}});
   ASSERT_TRUE(program) << program.error().message;
   EXPECT_EQ(result(**program), 1u);
 }
 
 TEST_F(Shader, HeadersSharedWithCppLeaveTheirCppOut) {
-  data.write("shared.h",
-             "#pragma once\n#ifdef __cplusplus\n#include <glm/glm.hpp>\n#include \"no/such/file.hpp\"\nusing glm::vec4;\n"
-             "#if 1\nnamespace x {\n#endif\n#else\n#define GLSL_SIDE 5\n#endif\n#ifndef __cplusplus\n#define MORE 6\n#endif\n");
+  data.write(
+      "shared.h",
+      "#pragma once\n#ifdef __cplusplus\n#include <glm/glm.hpp>\n#include \"no/such/file.hpp\"\nusing glm::vec4;\n"
+      "#if 1\nnamespace x {\n#endif\n#else\n#define GLSL_SIDE 5\n#endif\n#ifndef __cplusplus\n#define MORE "
+      "6\n#endif\n");
   data.write("m.comp.glsl", "#include \"shared.h\"\n" + writes("GLSL_SIDE + MORE"));
   auto program = library.load({{"m.comp.glsl"}, {}});
   ASSERT_TRUE(program) << program.error().message;
@@ -137,7 +146,8 @@ TEST_F(Shader, ErrorsNameFileAndLine) {
 TEST_F(Shader, ErrorsInAndAfterIncludesNameFileAndLine) {
   data.write("lib/good.glsl", "float g() { return 1.0; }\n\n\n");
   data.write("lib/bad.glsl", "// one\n// two\nfloat b() { return missing_1; }\n");
-  data.write("m.comp.glsl", "layout(local_size_x = 1) in;\n#include \"lib/good.glsl\"\n#include \"lib/bad.glsl\"\nvoid main() {}\n");
+  data.write("m.comp.glsl",
+             "layout(local_size_x = 1) in;\n#include \"lib/good.glsl\"\n#include \"lib/bad.glsl\"\nvoid main() {}\n");
   EXPECT_TRUE(has(load_error("m.comp.glsl"), "lib/bad.glsl:3: ")) << load_error("m.comp.glsl");
   data.write("n.comp.glsl",
              "layout(local_size_x = 1) in;\n#include \"lib/good.glsl\"\n#if 1\n#include \"lib/good.glsl\"\n#endif\n"

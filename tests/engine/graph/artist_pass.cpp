@@ -27,7 +27,9 @@ class ArtistPassTest : public test::GlTest {
             {"output", "b"}};
   }
   static json tint() {
-    return {{"compute", "tint.comp.glsl"}, {"read", {{"source", "a"}}}, {"write", {{"result", "b"}}},
+    return {{"compute", "tint.comp.glsl"},
+            {"read", {{"source", "a"}}},
+            {"write", {{"result", "b"}}},
             {"parameters", {{"tint", {3, 1, 1}}}}};
   }
   std::vector<float> run() {
@@ -76,9 +78,10 @@ TEST_F(ArtistPassTest, PutsItselfIntoAChainUnderOneName) {
 }
 
 TEST_F(ArtistPassTest, ModifiesInPlace) {
-  data.write("twice.comp.glsl",
-             "layout(local_size_x = 4, local_size_y = 4) in;\nlayout(rgba16f) uniform image2D img;\n"
-             "void main() { ivec2 at = ivec2(gl_GlobalInvocationID.xy); imageStore(img, at, 2.0 * imageLoad(img, at)); }\n");
+  data.write(
+      "twice.comp.glsl",
+      "layout(local_size_x = 4, local_size_y = 4) in;\nlayout(rgba16f) uniform image2D img;\n"
+      "void main() { ivec2 at = ivec2(gl_GlobalInvocationID.xy); imageStore(img, at, 2.0 * imageLoad(img, at)); }\n");
   json t = table({{"compute", "twice.comp.glsl"}, {"modify", {{"img", "a"}}}});
   t["output"] = "a";
   ASSERT_EQ(error(t), "(no error)");
@@ -108,6 +111,10 @@ TEST_F(ArtistPassTest, AShaderThatDoesNotCompileKeepsTheOldTable) {
   EXPECT_NE(message.find("city.lua: pass bad: "), std::string::npos) << message;
   EXPECT_NE(message.find("bad.comp.glsl:3: "), std::string::npos) << message;
   EXPECT_EQ(run().at(0), 6.0f);
+  EXPECT_EQ(graph.files(), (std::vector<std::string>{"bad.comp.glsl", "tint.comp.glsl"})) << "to be watched";
+  data.write("bad.comp.glsl", kTint);
+  ASSERT_EQ(error(table(bad)), "(no error)");
+  EXPECT_EQ(graph.files(), std::vector<std::string>{"bad.comp.glsl"});
 }
 
 TEST_F(ArtistPassTest, NamesThatCannotWorkAreErrors) {

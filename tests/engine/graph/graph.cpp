@@ -52,8 +52,9 @@ json pass(const char* name, json slots) {
 
 TEST_F(GraphTest, RunsInTheOrderOfTheTable) {
   load({{"resources", {{"a", rgba16f()}, {"b", rgba16f()}}},
-        {"passes", {pass("fill", {{"out", "a"}, {"parameters", {{"value", 2}}}}), pass("add", {{"target", "a"}}),
-                    pass("copy", {{"image", "a"}, {"out", "b"}})}},
+        {"passes",
+         {pass("fill", {{"out", "a"}, {"parameters", {{"value", 2}}}}), pass("add", {{"target", "a"}}),
+          pass("copy", {{"image", "a"}, {"out", "b"}})}},
         {"output", "b"}});
   EXPECT_EQ(run(), 12.0f);
   EXPECT_EQ(seen.order, (Order{"fill", "add", "copy"}));
@@ -62,8 +63,9 @@ TEST_F(GraphTest, RunsInTheOrderOfTheTable) {
 
 TEST_F(GraphTest, CullsWhatNobodyReadsAndWhatOnlyThatNeeds) {
   load({{"resources", {{"a", rgba16f()}, {"b", rgba16f()}, {"c", rgba16f()}}},
-        {"passes", {pass("fill", {{"out", "a"}}), pass("fill", {{"out", "b"}, {"id", "other"}}),
-                    pass("copy", {{"image", "b"}, {"out", "c"}})}},
+        {"passes",
+         {pass("fill", {{"out", "a"}}), pass("fill", {{"out", "b"}, {"id", "other"}}),
+          pass("copy", {{"image", "b"}, {"out", "c"}})}},
         {"output", "a"}});
   run();
   EXPECT_EQ(seen.order, Order{"fill"});
@@ -74,8 +76,9 @@ TEST_F(GraphTest, CullsWhatNobodyReadsAndWhatOnlyThatNeeds) {
 
 TEST_F(GraphTest, AWriteMakesWhatWasThereBeforeUnread) {
   load({{"resources", {{"a", rgba16f()}}},
-        {"passes", {pass("fill", {{"out", "a"}}), pass("add", {{"target", "a"}}),
-                    pass("fill", {{"out", "a"}, {"id", "again"}, {"parameters", {{"value", 4}}}})}},
+        {"passes",
+         {pass("fill", {{"out", "a"}}), pass("add", {{"target", "a"}}),
+          pass("fill", {{"out", "a"}, {"id", "again"}, {"parameters", {{"value", 4}}}})}},
         {"output", "a"}});
   EXPECT_EQ(run(), 4.0f);
   EXPECT_TRUE(report("fill").culled);
@@ -97,8 +100,9 @@ TEST_F(GraphTest, AnUnwantedModifyPassesTheResourceOn) {
 
 TEST_F(GraphTest, AnOptionalReadOfAnUnwantedWriterIsEmpty) {
   load({{"resources", {{"a", rgba16f()}, {"m", rgba16f()}, {"o", rgba16f()}}},
-        {"passes", {pass("fill", {{"out", "a"}}), pass("fog", {{"mask", "m"}}),
-                    pass("mix", {{"image", "a"}, {"mask", "m"}, {"out", "o"}})}},
+        {"passes",
+         {pass("fill", {{"out", "a"}}), pass("fog", {{"mask", "m"}}),
+          pass("mix", {{"image", "a"}, {"mask", "m"}, {"out", "o"}})}},
         {"output", "o"}});
   EXPECT_EQ(run(), 1001.0f);
   EXPECT_TRUE(seen.flags[0]);
@@ -135,15 +139,17 @@ TEST_F(GraphTest, ClearedResourcesHaveContentWithoutAWriter) {
   load({{"resources", {{"m", rgba16f({{"clear", 6}})}}}, {"passes", {pass("fog", {{"mask", "m"}})}}, {"output", "m"}});
   EXPECT_EQ(run({.fog = false}), 6.0f);
   // And a modify starts from it, every frame anew.
-  load({{"resources", {{"a", rgba16f({{"clear", 2}})}}}, {"passes", {pass("add", {{"target", "a"}})}}, {"output", "a"}});
+  load(
+      {{"resources", {{"a", rgba16f({{"clear", 2}})}}}, {"passes", {pass("add", {{"target", "a"}})}}, {"output", "a"}});
   EXPECT_EQ(run(), 12.0f);
   EXPECT_EQ(run(), 12.0f);
 }
 
 TEST_F(GraphTest, APassMayReadAndWriteOneName) {
   load({{"resources", {{"a", rgba16f()}}},
-        {"passes", {pass("fill", {{"out", "a"}}), pass("copy", {{"image", "a"}, {"out", "a"}}),
-                    pass("copy", {{"image", "a"}, {"out", "a"}, {"id", "copy_2"}})}},
+        {"passes",
+         {pass("fill", {{"out", "a"}}), pass("copy", {{"image", "a"}, {"out", "a"}}),
+          pass("copy", {{"image", "a"}, {"out", "a"}, {"id", "copy_2"}})}},
         {"output", "a"}});
   EXPECT_EQ(run(), 1.0f);
   ASSERT_EQ(seen.ids.size(), 3u);
@@ -160,7 +166,8 @@ TEST_F(GraphTest, DisjointLifetimesShareATexture) {
     if (i == 0) {
       passes.push_back(pass("fill", {{"out", "r0"}}));
     } else {
-      passes.push_back(pass("copy", {{"image", "r" + std::to_string(i - 1)}, {"out", "r" + std::to_string(i)},
+      passes.push_back(pass("copy", {{"image", "r" + std::to_string(i - 1)},
+                                     {"out", "r" + std::to_string(i)},
                                      {"id", "copy" + std::to_string(i)}}));
     }
   }
@@ -176,19 +183,22 @@ TEST_F(GraphTest, DisjointLifetimesShareATexture) {
 }
 
 TEST_F(GraphTest, DifferentSizesOrFormatsDoNotShare) {
-  load({{"resources", {{"a", rgba16f()}, {"b", rgba16f({{"scale", 0.5}})}, {"c", {{"format", "rgba32f"}}}, {"o", rgba16f()}}},
-        {"passes", {pass("fill", {{"out", "a"}}), pass("copy", {{"image", "a"}, {"out", "b"}}),
-                    pass("copy", {{"image", "b"}, {"out", "c"}, {"id", "2"}}),
-                    pass("copy", {{"image", "c"}, {"out", "o"}, {"id", "3"}})}},
+  load({{"resources",
+         {{"a", rgba16f()}, {"b", rgba16f({{"scale", 0.5}})}, {"c", {{"format", "rgba32f"}}}, {"o", rgba16f()}}},
+        {"passes",
+         {pass("fill", {{"out", "a"}}), pass("copy", {{"image", "a"}, {"out", "b"}}),
+          pass("copy", {{"image", "b"}, {"out", "c"}, {"id", "2"}}),
+          pass("copy", {{"image", "c"}, {"out", "o"}, {"id", "3"}})}},
         {"output", "o"}});
   run();
   EXPECT_EQ(std::set<GLuint>(seen.ids.begin(), seen.ids.end()).size(), 3u) << "o may take a's";
 }
 
 TEST_F(GraphTest, OptionalOutputsNobodyReadsAreLeftOut) {
-  json table = {{"resources", {{"a", rgba16f()}, {"o", rgba16f()}, {"dbg", rgba16f()}}},
-                {"passes", {pass("fill", {{"out", "a"}}), pass("mix", {{"image", "a"}, {"out", "o"}, {"debug", "dbg"}})}},
-                {"output", "o"}};
+  json table = {
+      {"resources", {{"a", rgba16f()}, {"o", rgba16f()}, {"dbg", rgba16f()}}},
+      {"passes", {pass("fill", {{"out", "a"}}), pass("mix", {{"image", "a"}, {"out", "o"}, {"debug", "dbg"}})}},
+      {"output", "o"}};
   load(table);
   run();
   EXPECT_FALSE(seen.flags[1]);
@@ -213,8 +223,9 @@ TEST_F(GraphTest, HistoryIsLastFramesContent) {
 
 TEST_F(GraphTest, HistoryOfAWriterThatRestedIsCleared) {
   load({{"resources", {{"h", rgba16f({{"history", true}})}, {"a", rgba16f()}, {"o", rgba16f()}}},
-        {"passes", {pass("fill", {{"out", "a"}}), pass("mix", {{"image", "a"}, {"mask", "previous:h"}, {"out", "o"}}),
-                    pass("fog", {{"mask", "h"}})}},
+        {"passes",
+         {pass("fill", {{"out", "a"}}), pass("mix", {{"image", "a"}, {"mask", "previous:h"}, {"out", "o"}}),
+          pass("fog", {{"mask", "h"}})}},
         {"output", "o"}});
   EXPECT_EQ(run(), 1.0f);
   EXPECT_EQ(run(), 1001.0f) << "last frame's fog, though fog runs after its reader";
@@ -225,10 +236,11 @@ TEST_F(GraphTest, HistoryOfAWriterThatRestedIsCleared) {
 }
 
 TEST_F(GraphTest, PersistentResourcesKeepTheirContent) {
-  const json table = {{"resources", {{"map", {{"format", "r32f"}, {"persistent", true}, {"width", 16}, {"height", 16}}},
-                                     {"o", rgba16f()}}},
-                      {"passes", {pass("cached", {{"map", "map"}}), pass("copy", {{"image", "map"}, {"out", "o"}})}},
-                      {"output", "o"}};
+  const json table = {
+      {"resources",
+       {{"map", {{"format", "r32f"}, {"persistent", true}, {"width", 16}, {"height", 16}}}, {"o", rgba16f()}}},
+      {"passes", {pass("cached", {{"map", "map"}}), pass("copy", {{"image", "map"}, {"out", "o"}})}},
+      {"output", "o"}};
   load(table);
   EXPECT_EQ(run(), 77.0f);
   EXPECT_EQ(seen.order.at(0), "cached anew");
@@ -254,12 +266,14 @@ TEST_F(GraphTest, PersistentResourcesAccumulate) {
 }
 
 TEST_F(GraphTest, TheLinearOutputIsKeptWholeBesideTheOutput) {
-  json table = {{"resources", {{"light", rgba16f()}, {"b", rgba16f()}, {"c", rgba16f()}, {"picture", rgba16f()}}},
-                {"passes", {pass("fill", {{"out", "light"}, {"parameters", {{"value", 3}}}}),
-                            pass("copy", {{"image", "light"}, {"out", "b"}}), pass("add", {{"target", "b"}}),
-                            pass("copy", {{"image", "b"}, {"out", "c"}, {"id", "c"}}), pass("add", {{"target", "c"}, {"id", "add_c"}}),
-                            pass("copy", {{"image", "c"}, {"out", "picture"}, {"id", "picture"}})}},
-                {"output", "picture"}};
+  json table = {
+      {"resources", {{"light", rgba16f()}, {"b", rgba16f()}, {"c", rgba16f()}, {"picture", rgba16f()}}},
+      {"passes",
+       {pass("fill", {{"out", "light"}, {"parameters", {{"value", 3}}}}),
+        pass("copy", {{"image", "light"}, {"out", "b"}}), pass("add", {{"target", "b"}}),
+        pass("copy", {{"image", "b"}, {"out", "c"}, {"id", "c"}}), pass("add", {{"target", "c"}, {"id", "add_c"}}),
+        pass("copy", {{"image", "c"}, {"out", "picture"}, {"id", "picture"}})}},
+      {"output", "picture"}};
   load(table);
   EXPECT_EQ(run(), 23.0f);
   EXPECT_EQ(graph.linear_output(), nullptr);
@@ -270,8 +284,10 @@ TEST_F(GraphTest, TheLinearOutputIsKeptWholeBesideTheOutput) {
   ASSERT_NE(graph.linear_output(), nullptr);
   EXPECT_EQ(first_pixel(*graph.linear_output()), 3.0f) << "no later pass took its texture";
   // It alone makes its writer run; without a writer this frame there is none, and the picture stands.
-  load({{"resources", {{"a", rgba16f()}, {"m", rgba16f()}}}, {"passes", {pass("fill", {{"out", "a"}}), pass("fog", {{"mask", "m"}})}},
-        {"output", "a"}, {"linear_output", "m"}});
+  load({{"resources", {{"a", rgba16f()}, {"m", rgba16f()}}},
+        {"passes", {pass("fill", {{"out", "a"}}), pass("fog", {{"mask", "m"}})}},
+        {"output", "a"},
+        {"linear_output", "m"}});
   EXPECT_EQ(run(), 1.0f);
   EXPECT_EQ(first_pixel(*graph.linear_output()), 1000.0f);
   EXPECT_EQ(run({.fog = false}), 1.0f);
@@ -279,7 +295,9 @@ TEST_F(GraphTest, TheLinearOutputIsKeptWholeBesideTheOutput) {
 }
 
 TEST_F(GraphTest, SizesFollowTheOutput) {
-  load({{"resources", {{"a", rgba16f({{"scale", 0.5}, {"mips", 0}})}}}, {"passes", {pass("fill", {{"out", "a"}})}}, {"output", "a"}});
+  load({{"resources", {{"a", rgba16f({{"scale", 0.5}, {"mips", 0}})}}},
+        {"passes", {pass("fill", {{"out", "a"}})}},
+        {"output", "a"}});
   for (const auto& [w, h, half_w, half_h, levels] : {std::array{9, 4, 5, 2, 3}, std::array{1, 1, 1, 1, 1}}) {
     auto output = graph.execute({}, w, h, timer);
     ASSERT_TRUE(output);
@@ -304,7 +322,8 @@ TEST_F(GraphTest, ABrokenTableKeepsTheOldFrame) {
         {"passes", {pass("add", {{"target", "sum"}})}},
         {"output", "sum"}});
   run();
-  auto done = graph.load_table({{"resources", json::object()}, {"passes", {{{"pass", "nothing"}}}}, {"output", "x"}}, "city.lua");
+  auto done = graph.load_table({{"resources", json::object()}, {"passes", {{{"pass", "nothing"}}}}, {"output", "x"}},
+                               "city.lua");
   ASSERT_FALSE(done);
   EXPECT_EQ(run(), 20.0f) << "and what it had accumulated";
 }
@@ -327,8 +346,9 @@ TEST_F(GraphTest, TimesEveryPassThatRuns) {
 
 TEST_F(GraphTest, DotShowsCulledPassesDimmedWithTheReason) {
   load({{"resources", {{"a", rgba16f()}, {"b", rgba16f()}, {"h", rgba16f({{"history", true}})}}},
-        {"passes", {pass("fill", {{"out", "a"}}), pass("rain", {{"target", "a"}}), pass("copy", {{"image", "a"}, {"out", "b"}}),
-                    pass("mix", {{"image", "a"}, {"mask", "previous:h"}, {"out", "h"}})}},
+        {"passes",
+         {pass("fill", {{"out", "a"}}), pass("rain", {{"target", "a"}}), pass("copy", {{"image", "a"}, {"out", "b"}}),
+          pass("mix", {{"image", "a"}, {"mask", "previous:h"}, {"out", "h"}})}},
         {"output", "h"}});
   run({.rain = false});
   const std::string dot = graph.dot();
@@ -362,7 +382,10 @@ TEST_F(GraphTest, PassesStartFromTheSameState) {
                       glGetIntegerv(GL_VIEWPORT, viewport);
                     }});
   Graph other(shaders, std::move(offers));
-  ASSERT_TRUE(other.load_table({{"resources", {{"a", rgba16f()}}}, {"passes", {{{"1", "messy"}, {"out", "a"}}, {{"1", "next"}, {"out", "a"}}}}, {"output", "a"}}, "x"));
+  ASSERT_TRUE(other.load_table({{"resources", {{"a", rgba16f()}}},
+                                {"passes", {{{"1", "messy"}, {"out", "a"}}, {{"1", "next"}, {"out", "a"}}}},
+                                {"output", "a"}},
+                               "x"));
   ASSERT_TRUE(other.execute({}, 8, 4, timer));
   EXPECT_FALSE(depth_test);
   EXPECT_FALSE(blend);
@@ -372,10 +395,14 @@ TEST_F(GraphTest, PassesStartFromTheSameState) {
 TEST_F(GraphTest, GlErrorsNameThePass) {
   std::vector<PassOffer> offers;
   offers.push_back({.name = "faulty", .slots = {}, .execute = [](PassContext&) { glEnable(0xbad); }});
-  offers.push_back({.name = "fine", .slots = {{"out", SlotAccess::write}},
-                    .execute = [](PassContext& p) { test::fill(p.texture("out"), 1); }});
+  offers.push_back({.name = "fine", .slots = {{"out", SlotAccess::write}}, .execute = [](PassContext& p) {
+                      test::fill(p.texture("out"), 1);
+                    }});
   Graph other(shaders, std::move(offers));
-  ASSERT_TRUE(other.load_table({{"resources", {{"a", rgba16f()}}}, {"passes", {{{"1", "faulty"}}, {{"1", "fine"}, {"out", "a"}}}}, {"output", "a"}}, "x"));
+  ASSERT_TRUE(other.load_table({{"resources", {{"a", rgba16f()}}},
+                                {"passes", {{{"1", "faulty"}}, {{"1", "fine"}, {"out", "a"}}}},
+                                {"output", "a"}},
+                               "x"));
   const int before = gl_error_count();
   ASSERT_TRUE(other.execute({}, 8, 4, timer));
   EXPECT_EQ(gl_error_count(), before + 1);
@@ -387,7 +414,8 @@ TEST_F(GraphTest, FramebuffersOfSlotsAreBoundAndSized) {
   std::vector<PassOffer> offers;
   using enum SlotAccess;
   int runs = 0;
-  offers.push_back({.name = "raster", .slots = {{"colour", write}, {"normal", write, true}, {"depth", write}},
+  offers.push_back({.name = "raster",
+                    .slots = {{"colour", write}, {"normal", write, true}, {"depth", write}},
                     .execute = [&](PassContext& p) {
                       ++runs;
                       const std::string_view colours[] = {"colour"};
@@ -400,9 +428,11 @@ TEST_F(GraphTest, FramebuffersOfSlotsAreBoundAndSized) {
                       glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
                     }});
   Graph other(shaders, std::move(offers));
-  ASSERT_TRUE(other.load_table({{"resources", {{"c", rgba16f({{"scale", 0.5}})}, {"z", {{"format", "depth32f"}, {"scale", 0.5}}}}},
-                                {"passes", {{{"1", "raster"}, {"colour", "c"}, {"depth", "z"}}}},
-                                {"output", "c"}}, "x"));
+  ASSERT_TRUE(other.load_table(
+      {{"resources", {{"c", rgba16f({{"scale", 0.5}})}, {"z", {{"format", "depth32f"}, {"scale", 0.5}}}}},
+       {"passes", {{{"1", "raster"}, {"colour", "c"}, {"depth", "z"}}}},
+       {"output", "c"}},
+      "x"));
   for (int size : {8, 8, 9, 8}) {
     auto output = other.execute({}, size, size, timer);
     ASSERT_TRUE(output);

@@ -24,7 +24,9 @@ inline float first_pixel(const Texture& texture) {
   return pixels[0];
 }
 
-inline void fill(const Texture& texture, float value) { clear_texture(texture, {value, value, value, value}); }
+inline void fill(const Texture& texture, float value) {
+  clear_texture(texture, {value, value, value, value});
+}
 
 // What the passes saw, for the tests to look at.
 struct Seen {
@@ -37,11 +39,12 @@ inline std::vector<PassOffer> offers(Seen& seen) {
   using enum SlotAccess;
   std::vector<PassOffer> list;
   // out = value
-  list.push_back({.name = "fill", .slots = {{"out", write}}, .parameters = {{"value", 1.0}}, .execute = [&](PassContext& p) {
-                    seen.order.push_back("fill");
-                    seen.ids.push_back(p.texture("out").id);
-                    fill(p.texture("out"), p.parameter("value"));
-                  }});
+  list.push_back(
+      {.name = "fill", .slots = {{"out", write}}, .parameters = {{"value", 1.0}}, .execute = [&](PassContext& p) {
+         seen.order.push_back("fill");
+         seen.ids.push_back(p.texture("out").id);
+         fill(p.texture("out"), p.parameter("value"));
+       }});
   // target += amount
   const auto add = [&seen](std::string name) {
     return [&seen, name](PassContext& p) {
@@ -49,7 +52,8 @@ inline std::vector<PassOffer> offers(Seen& seen) {
       fill(p.texture("target"), first_pixel(p.texture("target")) + p.parameter("amount"));
     };
   };
-  list.push_back({.name = "add", .slots = {{"target", modify}}, .parameters = {{"amount", 10.0}}, .execute = add("add")});
+  list.push_back(
+      {.name = "add", .slots = {{"target", modify}}, .parameters = {{"amount", 10.0}}, .execute = add("add")});
   list.push_back({.name = "rain",
                   .slots = {{"target", modify}},
                   .parameters = {{"amount", 100.0}},
@@ -58,10 +62,11 @@ inline std::vector<PassOffer> offers(Seen& seen) {
   list.push_back({.name = "fog",
                   .slots = {{"mask", write}},
                   .wanted = [](const Frame& frame) { return frame.fog; },
-                  .execute = [&](PassContext& p) {
-                    seen.order.push_back("fog");
-                    fill(p.texture("mask"), 1000.0f);
-                  }});
+                  .execute =
+                      [&](PassContext& p) {
+                        seen.order.push_back("fog");
+                        fill(p.texture("mask"), 1000.0f);
+                      }});
   // out = image + mask, where there is a mask
   list.push_back({.name = "mix",
                   .slots = {{"image", read}, {"mask", read, true}, {"out", write}, {"debug", write, true}},
@@ -88,10 +93,11 @@ inline std::vector<PassOffer> offers(Seen& seen) {
   list.push_back({.name = "cached",
                   .slots = {{"map", write}},
                   .wanted = [](const Frame& frame) { return frame.sun; },
-                  .execute = [&](PassContext& p) {
-                    seen.order.push_back(p.fresh("map") ? "cached anew" : "cached kept");
-                    if (p.fresh("map")) fill(p.texture("map"), 77.0f);
-                  }});
+                  .execute =
+                      [&](PassContext& p) {
+                        seen.order.push_back(p.fresh("map") ? "cached anew" : "cached kept");
+                        if (p.fresh("map")) fill(p.texture("map"), 77.0f);
+                      }});
   return list;
 }
 

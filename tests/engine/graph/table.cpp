@@ -23,8 +23,9 @@ class TableTest : public ::testing::Test {
   std::vector<PassOffer> offers = test::offers(seen);
 };
 
-#define RESOURCES R"("resources": {"a": {"format": "rgba16f"}, "b": {"format": "rgba16f", "scale": 0.5},)" \
-                  R"( "d": {"format": "depth32f"}, "h": {"format": "r32f", "history": true}},)"
+#define RESOURCES                                                                          \
+  R"("resources": {"a": {"format": "rgba16f"}, "b": {"format": "rgba16f", "scale": 0.5},)" \
+  R"( "d": {"format": "depth32f"}, "h": {"format": "r32f", "history": true}},)"
 
 TEST_F(TableTest, ReadsPassesInBothWaysOfWritingThem) {
   auto table = read_table(json::parse("{" RESOURCES R"("passes": [{"1": "fill", "out": "a", "parameters": {"value": 3}},
@@ -70,7 +71,8 @@ TEST_F(TableTest, WrongResources) {
     EXPECT_NE(message.find(part), std::string::npos) << message;
   };
   holds(resource(R"({"format": "rgba16"})"), "no pass writes \"x\"");
-  holds(resource(R"({"format": "rgba61f"})"), "resources.x.format: unknown format \"rgba61f\"; did you mean \"rgba16f\"?");
+  holds(resource(R"({"format": "rgba61f"})"),
+        "resources.x.format: unknown format \"rgba61f\"; did you mean \"rgba16f\"?");
   holds(resource(R"({"format": 3})"), "resources.x.format: expected a string");
   holds(resource("{}"), "resources.x: format is missing");
   holds(resource("7"), "resources.x: expected a table, got number");
@@ -90,10 +92,12 @@ TEST_F(TableTest, WrongResources) {
 
 TEST_F(TableTest, WrongPasses) {
   const auto expect_pass = [&](const std::string& body, std::initializer_list<const char*> parts) {
-    expect(("{" RESOURCES R"("passes": [{"pass": "fill", "out": "a"}, )" + body + R"(], "output": "a"})").c_str(), parts);
+    expect(("{" RESOURCES R"("passes": [{"pass": "fill", "out": "a"}, )" + body + R"(], "output": "a"})").c_str(),
+           parts);
   };
   expect_pass(R"({"pass": "coppy"})", {"passes[2]: unknown pass \"coppy\"; did you mean \"copy\"? Known: ", "measure"});
-  expect_pass(R"({"pass": "copy", "imagee": "a"})", {"passes[2] (copy): unknown slot \"imagee\"; did you mean \"image\"?"});
+  expect_pass(R"({"pass": "copy", "imagee": "a"})",
+              {"passes[2] (copy): unknown slot \"imagee\"; did you mean \"image\"?"});
   expect_pass(R"({"pass": "copy", "image": "a"})", {"passes[2] (copy): slot \"out\" is not connected", "writes"});
   expect_pass(R"({"pass": "copy", "out": "b"})", {"slot \"image\" is not connected", "reads"});
   expect_pass(R"({"pass": "copy", "image": "aa", "out": "b"})",
@@ -119,9 +123,11 @@ TEST_F(TableTest, WrongOrder) {
          {"passes[1] (copy).image: \"b\" is read before any pass has written it"});
   expect("{" RESOURCES R"("passes": [{"pass": "copy", "image": "a", "out": "a"}], "output": "a"})",
          {"\"a\" is read before"});
-  expect("{" RESOURCES R"("passes": [{"pass": "add", "target": "a"}], "output": "a"})", {"(add).target: \"a\" is read"});
+  expect("{" RESOURCES R"("passes": [{"pass": "add", "target": "a"}], "output": "a"})",
+         {"(add).target: \"a\" is read"});
   expect("{" RESOURCES R"("passes": [{"pass": "fill", "out": "a"}], "output": "b"})", {"output: no pass writes \"b\""});
-  expect("{" RESOURCES R"("passes": [{"pass": "fill", "out": "a"}], "output": "c"})", {"output: unknown resource \"c\""});
+  expect("{" RESOURCES R"("passes": [{"pass": "fill", "out": "a"}], "output": "c"})",
+         {"output: unknown resource \"c\""});
 }
 
 TEST_F(TableTest, WrongHistory) {
@@ -131,7 +137,8 @@ TEST_F(TableTest, WrongHistory) {
          {"last frame's h can only be read"});
   expect("{" RESOURCES R"("passes": [{"pass": "copy", "image": "previous:h", "out": "a"}], "output": "a"})",
          {"\"h\" is read but no pass writes it"});
-  expect("{" RESOURCES R"("passes": [{"pass": "fill", "out": "h"}], "output": "previous:h"})", {"output: is last frame's"});
+  expect("{" RESOURCES R"("passes": [{"pass": "fill", "out": "h"}], "output": "previous:h"})",
+         {"output: is last frame's"});
   expect("{" RESOURCES R"("passes": [{"pass": "copy", "image": "previous:x", "out": "a"}], "output": "a"})",
          {"unknown resource \"x\""});
 }
@@ -147,7 +154,8 @@ TEST_F(TableTest, OneResourceInTwoSlots) {
 
 TEST_F(TableTest, WrongArtistPasses) {
   const auto expect_pass = [&](const std::string& body, std::initializer_list<const char*> parts) {
-    expect(("{" RESOURCES R"("passes": [{"pass": "fill", "out": "a"}, )" + body + R"(], "output": "a"})").c_str(), parts);
+    expect(("{" RESOURCES R"("passes": [{"pass": "fill", "out": "a"}, )" + body + R"(], "output": "a"})").c_str(),
+           parts);
   };
   expect_pass(R"({"compute": 3})", {"passes[2].compute: expected a string"});
   expect_pass(R"({"compute": "x.glsl"})", {"ends in .comp.glsl"});
@@ -155,7 +163,8 @@ TEST_F(TableTest, WrongArtistPasses) {
   expect_pass(R"({"compute": "x.comp.glsl", "writes": {}})", {"unknown key \"writes\"; did you mean \"write\"?"});
   expect_pass(R"({"compute": "x.comp.glsl", "write": "a"})", {"(x).write: expected a table"});
   expect_pass(R"({"compute": "x.comp.glsl", "write": {"o": "q"}})", {"(x).write.o: unknown resource \"q\""});
-  expect_pass(R"({"compute": "x.comp.glsl", "write": {"o": "d"}})", {"\"d\" is depth32f, which no compute shader can write"});
+  expect_pass(R"({"compute": "x.comp.glsl", "write": {"o": "d"}})",
+              {"\"d\" is depth32f, which no compute shader can write"});
   expect_pass(R"({"compute": "x.comp.glsl", "read": {"o": "a"}, "write": {"o": "b"}})", {"named twice"});
   expect_pass(R"({"compute": "x.comp.glsl", "write": {"o": "b"}, "parameters": {"p": "x"}})",
               {"(x).parameters.p: expected a number"});
