@@ -1,5 +1,5 @@
 #version 450 core
-// Which lights can be seen on the surfaces of each tile of 8x8 pixels: a 128-bit mask a tile. One invocation a
+// Which lights can be seen on the surfaces of each tile of 8x8 pixels: a mask a tile. One invocation a
 // tile; it bounds place, normals and roughness of the tile's pixels and from them, light by light, the radiance
 // that could leave towards the camera. Lights whose bound stays below `threshold` of a white pixel are left out:
 // that keeps the long mirror image of a lamp on a wet road 80 m away, and drops its glow on the wall beside it.
@@ -7,6 +7,9 @@
 #include "systems/geometry/gbuffer.glsl"
 #include "systems/lighting/brdf.h"
 #include "systems/lighting/lighting_shared.h"
+#ifdef SHADOWS
+#include "systems/lighting/shadow.glsl"
+#endif
 
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(binding = 0, rgba32ui) uniform writeonly uimage2D light_lists;
@@ -95,5 +98,26 @@ void main() {
     }
     if (bound * illuminance * frame.lens.w > threshold) mask[i >> 5] |= 1u << (i & 31u);
   }
+#ifdef SHADOWS
+  // Five places of the tile ask the shadow maps, by their blurred half: it sees what lies between the places.
+  uint in_shadow = (1u << chosen.counts.y) - 1u, in_light = in_shadow;
+  for (int i = 0; i < 5; ++i) {
+    ivec2 texel = min(first + (i == 4 ? ivec2(4) : ivec2((i & 1) * 5 + 1, (i >> 1) * 5 + 1)), size - 1);
+    float depth = read_depth(texel);
+    if (depth <= 0.0) continue;
+    vec3 place = relative_position(vec2(texel) + 0.5, depth);
+    vec3 n = unit_from_octahedral(texelFetch(gbuffer_normal, texel, 0).xy * 2.0 - 1.0);
+    float bias_m = shadow_bias_m(place);
+    for (uint c = 0u; c < chosen.counts.y; ++c) {
+      LightGpu light = chosen.lights[c];
+      float share = blurred_share(light.cone_shadow.z, place + n * bias_m - light.position_range.xyz,
+                                  light.cone_shadow.w, bias_m);
+      in_shadow &= ~(share > 0.12 ? 1u << c : 0u);
+      in_light &= ~(share < 0.99 ? 1u << c : 0u);
+    }
+  }
+  mask.x &= ~in_shadow;
+  mask.w |= (in_light & mask.x) << 16;
+#endif
   imageStore(light_lists, tile, mask);
 }

@@ -7,10 +7,10 @@
 namespace petrichor {
 #endif
 
-// A light list is a 128-bit mask, one texel of an rgba32ui texture: more lights than that are dropped by
-// importance. The chosen lights lie in a uniform block, not in the frame's buffer: software GL reads a uniform
+// A light list is one texel of an rgba32ui texture: 112 bits, one a light (more are dropped by importance), and 16
+// bits that say which of the shadow casters need no look at their map, because all of the tile is in their light. The chosen lights lie in a uniform block, not in the frame's buffer: software GL reads a uniform
 // at once for all lanes, but a buffer lane by lane (a third of the whole light loop, measured).
-#define MAXIMUM_LIGHTS 128
+#define MAXIMUM_LIGHTS 112
 #define CHOSEN_LIGHTS_BINDING 3  // uniform block (2 is the material's)
 #define LIGHT_TILE 8             // pixels per side of a tile
 

@@ -77,14 +77,17 @@ PassOffer light_lists(State state) {
            {"shadow_atlas", SlotAccess::read, true},
            {"light_lists", SlotAccess::write}},
           {{"threshold", 0.0015}},  // of a white pixel
-          {{"lists", {{"systems/lighting/light_lists.comp.glsl"}, {}}}},
+          {{"plain", {{"systems/lighting/light_lists.comp.glsl"}, {}}},
+           {"shadows", {{"systems/lighting/light_lists.comp.glsl"}, {"SHADOWS"}}}},
           {},
           [state](PassContext& context) {
             const ChosenLights chosen = choose_lights(context.frame, shadow_slots(*state, context));
             upload(state->chosen_lights, &chosen, sizeof chosen);
             glBindBufferBase(GL_UNIFORM_BUFFER, CHOSEN_LIGHTS_BINDING, state->chosen_lights.id);
-            const Program& lists = context.program("lists");
+            const bool shadows = context.has("shadow_atlas");
+            const Program& lists = context.program(shadows ? "shadows" : "plain");
             lists.use();
+            if (shadows) context.bind_texture(shadow_unit, "shadow_atlas");
             lists.set("threshold", context.parameter("threshold"));
             context.bind_texture(0, "depth");
             context.bind_texture(2, "normal");

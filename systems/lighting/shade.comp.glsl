@@ -74,9 +74,10 @@ void main() {
   vec3 irradiance = vec3(0.0), specular = vec3(0.0);
   uvec4 mask = depth > 0.0 ? texelFetch(light_lists, texel / LIGHT_TILE, 0) : uvec4(0u);
 #ifdef SHADOWS
-  uint casters = mask.x & ((1u << chosen.counts.y) - 1u);  // at most 16
+  uint casters = mask.x & ((1u << chosen.counts.y) - 1u) & ~(mask.w >> 16);
   mask.x &= ~casters;
-  float bias_m = 0.015 + 0.002 * length(at.place);
+  mask.w &= 0xffffu;
+  float bias_m = shadow_bias_m(at.place);
   while (casters != 0u) {
     int i = findLSB(casters);
     casters &= casters - 1u;

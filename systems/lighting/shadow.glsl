@@ -45,11 +45,18 @@ float soft_shadow(float slot, vec3 from_light, float reach_m, float source_radiu
   return clamp((share - 0.15) / 0.85, 0.0, 1.0);
 }
 
+// Keeps a surface out of its own shadow: grows with the distance to the camera, as pixels do.
+float shadow_bias_m(vec3 place) { return 0.015 + 0.002 * length(place); }
+
+// Chebyshev's bound by the blurred moments alone.
+float blurred_share(float slot, vec3 from_light, float reach_m, float bias_m) {
+  float warped = exp(SHADOW_WARP * min((length(from_light) - bias_m) / reach_m, 1.0));
+  return lit_share(textureLod(shadow_atlas, shadow_place(slot, from_light), 0.0).ba, warped);
+}
+
 // A fixed softness, for volumes of mist and for small captures.
 float plain_shadow(float slot, vec3 from_light, float reach_m) {
-  float warped = exp(SHADOW_WARP * min((length(from_light) - 0.05) / reach_m, 1.0));
-  float share = lit_share(textureLod(shadow_atlas, shadow_place(slot, from_light), 0.0).ba, warped);
-  return clamp((share - 0.15) / 0.85, 0.0, 1.0);
+  return clamp((blurred_share(slot, from_light, reach_m, 0.05) - 0.15) / 0.85, 0.0, 1.0);
 }
 
 #endif
