@@ -18,7 +18,9 @@ struct FixedClock {
 };
 
 // Simulated time in seconds: a product, not a sum, so tick 900 is the same however it was reached.
-inline double simulated_s(const FixedClock& clock) { return static_cast<double>(clock.tick) * clock.step_s; }
+inline double simulated_s(const FixedClock& clock) {
+  return static_cast<double>(clock.tick) * clock.step_s;
+}
 
 // Where the picture stands between the last two ticks, in [0, 1): 0 shows the older one.
 inline double interpolation(const FixedClock& clock) {
@@ -41,6 +43,8 @@ inline int advance(FixedClock& clock, double real_s) {
 }
 
 // Counts one simulated step.
-inline void step(FixedClock& clock) { ++clock.tick; }
+inline void step(FixedClock& clock) {
+  ++clock.tick;
+}
 
 }  // namespace petrichor

@@ -18,7 +18,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string reason(int error) { return std::error_code(error, std::generic_category()).message(); }
+std::string reason(int error) {
+  return std::error_code(error, std::generic_category()).message();
+}
 
 fs::path environment_path(const char* name) {
   const char* value = std::getenv(name);
@@ -39,11 +41,15 @@ const char* advice(int error) {
   switch (error) {
     case EACCES:
     case EPERM:
-    case EROFS: return "; choose a folder that you may write to";
+    case EROFS:
+      return "; choose a folder that you may write to";
     case ENOSPC:
-    case EDQUOT: return "; free some space or choose another disk";
-    case EISDIR: return "; name a file, not a folder";
-    default: return "";
+    case EDQUOT:
+      return "; free some space or choose another disk";
+    case EISDIR:
+      return "; name a file, not a folder";
+    default:
+      return "";
   }
 }
 
@@ -123,9 +129,15 @@ Result<fs::path> find_data(const fs::path& relative) {
                              relative.string(), looked));
 }
 
-fs::path user_config_dir() { return user_dir("XDG_CONFIG_HOME", ".config"); }
-fs::path user_cache_dir() { return user_dir("XDG_CACHE_HOME", ".cache"); }
-fs::path user_state_dir() { return user_dir("XDG_STATE_HOME", ".local/state"); }
+fs::path user_config_dir() {
+  return user_dir("XDG_CONFIG_HOME", ".config");
+}
+fs::path user_cache_dir() {
+  return user_dir("XDG_CACHE_HOME", ".cache");
+}
+fs::path user_state_dir() {
+  return user_dir("XDG_STATE_HOME", ".local/state");
+}
 
 Result<std::string> read_whole_file(const fs::path& path) {
   const auto cannot = [&](int error) {

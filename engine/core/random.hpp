@@ -38,10 +38,9 @@ class RandomStream {
   explicit RandomStream(std::uint32_t seed, std::uint32_t stream = 0) : seed_(seed), stream_(stream) {}
   std::uint32_t bits() {
     const std::uint64_t n = drawn_++;
-    return random_bits(
-        glm::uvec4(seed_, stream_, static_cast<std::uint32_t>(n), static_cast<std::uint32_t>(n >> 32)));
+    return random_bits(glm::uvec4(seed_, stream_, static_cast<std::uint32_t>(n), static_cast<std::uint32_t>(n >> 32)));
   }
-  float uniform() { return unit_float(bits()); }                               // [0, 1)
+  float uniform() { return unit_float(bits()); }  // [0, 1)
   float uniform(float low, float high) { return low + (high - low) * uniform(); }
   // 0 .. count-1, count > 0; by multiplication (Lemire 2019), whose bias is below count / 2^32.
   std::uint32_t below(std::uint32_t count) {

@@ -39,13 +39,12 @@ void walk_3(Registry& r) {
   });
 }
 void walk_4(Registry& r) {
-  r.view<Position, const Velocity, const Mass, Age>().each(
-      [](Position& p, const Velocity& v, const Mass& m, Age& a) {
-        p.x += v.x * m.kg;
-        p.y += v.y * m.kg;
-        p.z += v.z * m.kg;
-        a.s += 0.01f;
-      });
+  r.view<Position, const Velocity, const Mass, Age>().each([](Position& p, const Velocity& v, const Mass& m, Age& a) {
+    p.x += v.x * m.kg;
+    p.y += v.y * m.kg;
+    p.z += v.z * m.kg;
+    a.s += 0.01f;
+  });
 }
 
 std::vector<Entity> fill_2(Registry& r, std::size_t n) {
@@ -109,19 +108,23 @@ void bench_shuffled(std::vector<BenchRow>& rows, std::size_t n, int times) {
 void bench_changes(std::vector<BenchRow>& rows, std::size_t n, int times) {
   Registry r;
   std::vector<Entity> all;
-  rows.push_back(timed("create_with_2", n, times, [&] { r = Registry(); }, [&] { all = fill_2(r, n); }));
-  rows.push_back(timed("remove_and_add", n, times, [] {}, [&] {
-    for (const Entity e : all) r.remove<Velocity>(e);
-    for (const Entity e : all) r.emplace<Velocity>(e);
-  }));
-  rows.push_back(timed("destroy", n, times,
-                       [&] {
-                         r = Registry();
-                         all = fill_2(r, n);
-                       },
-                       [&] {
-                         for (const Entity e : all) r.destroy(e);
-                       }));
+  rows.push_back(timed(
+      "create_with_2", n, times, [&] { r = Registry(); }, [&] { all = fill_2(r, n); }));
+  rows.push_back(timed(
+      "remove_and_add", n, times, [] {},
+      [&] {
+        for (const Entity e : all) r.remove<Velocity>(e);
+        for (const Entity e : all) r.emplace<Velocity>(e);
+      }));
+  rows.push_back(timed(
+      "destroy", n, times,
+      [&] {
+        r = Registry();
+        all = fill_2(r, n);
+      },
+      [&] {
+        for (const Entity e : all) r.destroy(e);
+      }));
 }
 
 }  // namespace

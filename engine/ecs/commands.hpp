@@ -31,8 +31,10 @@ class Commands {
   template <class T, class... Args>
   void emplace(Entity e, Args&&... args) {
     std::vector<T>& values = queue<T>().values;
-    if constexpr (std::is_constructible_v<T, Args...>) values.push_back(T(std::forward<Args>(args)...));
-    else values.push_back(T{std::forward<Args>(args)...});
+    if constexpr (std::is_constructible_v<T, Args...>)
+      values.push_back(T(std::forward<Args>(args)...));
+    else
+      values.push_back(T{std::forward<Args>(args)...});
     steps_.push_back({e, values.size() - 1, [](Commands& c, Entity entity, std::size_t at) {
                         if (!c.registry_->alive(entity)) return;
                         T value = std::move(c.queue<T>().values[at]);

@@ -17,8 +17,12 @@ inline constexpr std::uint32_t entity_index_bits = 22;
 inline constexpr std::uint32_t entity_index_mask = (1u << entity_index_bits) - 1u;  // the null entity's index
 inline constexpr std::uint32_t entity_version_mask = 0xffffffffu >> entity_index_bits;
 
-constexpr std::uint32_t entity_index(Entity e) { return e.bits & entity_index_mask; }
-constexpr std::uint32_t entity_version(Entity e) { return e.bits >> entity_index_bits; }
+constexpr std::uint32_t entity_index(Entity e) {
+  return e.bits & entity_index_mask;
+}
+constexpr std::uint32_t entity_version(Entity e) {
+  return e.bits >> entity_index_bits;
+}
 constexpr Entity make_entity(std::uint32_t index, std::uint32_t version) {
   return Entity{(version << entity_index_bits) | (index & entity_index_mask)};
 }

@@ -65,8 +65,10 @@ class Registry {
   template <class T, class... Args>
   T& emplace_or_replace(Entity e, Args&&... args) {
     if (T* value = find<T>(e)) {
-      if constexpr (std::is_constructible_v<T, Args...>) *value = T(std::forward<Args>(args)...);
-      else *value = T{std::forward<Args>(args)...};
+      if constexpr (std::is_constructible_v<T, Args...>)
+        *value = T(std::forward<Args>(args)...);
+      else
+        *value = T{std::forward<Args>(args)...};
       return *value;
     }
     return emplace<T>(e, std::forward<Args>(args)...);

@@ -111,7 +111,8 @@ std::vector<std::string> problems(std::span<const SystemAccess> list, std::span<
       }
     }
     for (const std::string_view name : s.needs) {
-      if (!find_schema(schemas, name)) found.push_back(fmt::format("{}: needs \"{}\", which has no schema", s.name, name));
+      if (!find_schema(schemas, name))
+        found.push_back(fmt::format("{}: needs \"{}\", which has no schema", s.name, name));
     }
     for (const std::string_view name : s.reads) {
       if (!holds(known, name)) {
@@ -120,7 +121,8 @@ std::vector<std::string> problems(std::span<const SystemAccess> list, std::span<
     }
     for (const std::string_view name : s.changes) {
       if (name != anything && !holds(known, name)) {
-        found.push_back(fmt::format("{}: changes \"{}\", which is no component{}", s.name, name, name_hint(name, known)));
+        found.push_back(
+            fmt::format("{}: changes \"{}\", which is no component{}", s.name, name, name_hint(name, known)));
       }
     }
   }

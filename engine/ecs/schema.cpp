@@ -30,15 +30,24 @@ std::string shown(std::string_view text) {
 
 std::string came(const json& value) {
   switch (value.type()) {
-    case json::value_t::null: return "null";
-    case json::value_t::boolean: return value.get<bool>() ? "true" : "false";
-    case json::value_t::number_integer: return fmt::format("{}", value.get<std::int64_t>());
-    case json::value_t::number_unsigned: return fmt::format("{}", value.get<std::uint64_t>());
-    case json::value_t::number_float: return fmt::format("{}", value.get<double>());
-    case json::value_t::string: return "the string " + shown(value.get_ref<const std::string&>());
-    case json::value_t::array: return fmt::format("an array of {}", value.size());
-    case json::value_t::object: return "an object";
-    default: return "something that is no JSON value";
+    case json::value_t::null:
+      return "null";
+    case json::value_t::boolean:
+      return value.get<bool>() ? "true" : "false";
+    case json::value_t::number_integer:
+      return fmt::format("{}", value.get<std::int64_t>());
+    case json::value_t::number_unsigned:
+      return fmt::format("{}", value.get<std::uint64_t>());
+    case json::value_t::number_float:
+      return fmt::format("{}", value.get<double>());
+    case json::value_t::string:
+      return "the string " + shown(value.get_ref<const std::string&>());
+    case json::value_t::array:
+      return fmt::format("an array of {}", value.size());
+    case json::value_t::object:
+      return "an object";
+    default:
+      return "something that is no JSON value";
   }
 }
 
@@ -53,14 +62,22 @@ std::string range_words(const Field& f) {
 
 std::string expected_words(const Field& f) {
   switch (f.type) {
-    case FieldType::boolean: return "true or false";
-    case FieldType::integer: return "a whole number" + range_words(f);
-    case FieldType::real: return "a finite number" + range_words(f);
-    case FieldType::vec2: return "an array of 2 finite numbers" + range_words(f);
-    case FieldType::vec3: return "an array of 3 finite numbers" + range_words(f);
-    case FieldType::colour: return "an array [r, g, b] of 3 finite numbers (linear RGB)" + range_words(f);
-    case FieldType::rotation: return "an array [x, y, z, w], a quaternion of length 1";
-    case FieldType::text: return "a string";
+    case FieldType::boolean:
+      return "true or false";
+    case FieldType::integer:
+      return "a whole number" + range_words(f);
+    case FieldType::real:
+      return "a finite number" + range_words(f);
+    case FieldType::vec2:
+      return "an array of 2 finite numbers" + range_words(f);
+    case FieldType::vec3:
+      return "an array of 3 finite numbers" + range_words(f);
+    case FieldType::colour:
+      return "an array [r, g, b] of 3 finite numbers (linear RGB)" + range_words(f);
+    case FieldType::rotation:
+      return "an array [x, y, z, w], a quaternion of length 1";
+    case FieldType::text:
+      return "a string";
     case FieldType::choice: {
       std::string words;
       for (const std::string_view c : f.choices) words += fmt::format("{} \"{}\"", words.empty() ? "one of" : ",", c);
@@ -154,24 +171,36 @@ Result<void> store_choice(Result<std::uint64_t> parsed, void* target, std::size_
   if (!target) return {};
   const auto write = [&](auto number) { std::memcpy(target, &number, sizeof number); };
   switch (size_bytes) {
-    case 1: write(static_cast<std::uint8_t>(*parsed)); break;
-    case 2: write(static_cast<std::uint16_t>(*parsed)); break;
-    case 4: write(static_cast<std::uint32_t>(*parsed)); break;
-    default: write(*parsed); break;
+    case 1:
+      write(static_cast<std::uint8_t>(*parsed));
+      break;
+    case 2:
+      write(static_cast<std::uint16_t>(*parsed));
+      break;
+    case 4:
+      write(static_cast<std::uint32_t>(*parsed));
+      break;
+    default:
+      write(*parsed);
+      break;
   }
   return {};
 }
 
 Result<void> store_integer(const Place& p, const json& value, void* target) {
   switch (p.field.size_bytes) {
-    case 1: return p.field.is_signed ? store(parse_integer<std::int8_t>(p, value), target)
-                                     : store(parse_integer<std::uint8_t>(p, value), target);
-    case 2: return p.field.is_signed ? store(parse_integer<std::int16_t>(p, value), target)
-                                     : store(parse_integer<std::uint16_t>(p, value), target);
-    case 4: return p.field.is_signed ? store(parse_integer<std::int32_t>(p, value), target)
-                                     : store(parse_integer<std::uint32_t>(p, value), target);
-    default: return p.field.is_signed ? store(parse_integer<std::int64_t>(p, value), target)
-                                      : store(parse_integer<std::uint64_t>(p, value), target);
+    case 1:
+      return p.field.is_signed ? store(parse_integer<std::int8_t>(p, value), target)
+                               : store(parse_integer<std::uint8_t>(p, value), target);
+    case 2:
+      return p.field.is_signed ? store(parse_integer<std::int16_t>(p, value), target)
+                               : store(parse_integer<std::uint16_t>(p, value), target);
+    case 4:
+      return p.field.is_signed ? store(parse_integer<std::int32_t>(p, value), target)
+                               : store(parse_integer<std::uint32_t>(p, value), target);
+    default:
+      return p.field.is_signed ? store(parse_integer<std::int64_t>(p, value), target)
+                               : store(parse_integer<std::uint64_t>(p, value), target);
   }
 }
 
@@ -181,18 +210,23 @@ Result<void> check_and_store(const Schema& schema, const Field& f, const json& v
     case FieldType::boolean:
       if (!value.is_boolean()) return refused(p, came(value));
       return store(Result<bool>(value.get<bool>()), target);
-    case FieldType::integer: return store_integer(p, value, target);
+    case FieldType::integer:
+      return store_integer(p, value, target);
     case FieldType::real:
       return f.size_bytes == sizeof(double) ? store(parse_real<double>(p, value), target)
                                             : store(parse_real<float>(p, value), target);
-    case FieldType::vec2: return store(parse_vector<2>(p, value), target);
+    case FieldType::vec2:
+      return store(parse_vector<2>(p, value), target);
     case FieldType::vec3:
-    case FieldType::colour: return store(parse_vector<3>(p, value), target);
-    case FieldType::rotation: return store(parse_rotation(p, value), target);
+    case FieldType::colour:
+      return store(parse_vector<3>(p, value), target);
+    case FieldType::rotation:
+      return store(parse_rotation(p, value), target);
     case FieldType::text:
       if (!value.is_string()) return refused(p, came(value));
       return store(Result<std::string>(value.get<std::string>()), target);
-    case FieldType::choice: return store_choice(parse_choice(p, value), target, f.size_bytes);
+    case FieldType::choice:
+      return store_choice(parse_choice(p, value), target, f.size_bytes);
   }
   return {};
 }
@@ -206,19 +240,27 @@ T load(const void* from) {
 
 std::uint64_t load_unsigned(const void* from, std::size_t size_bytes) {
   switch (size_bytes) {
-    case 1: return load<std::uint8_t>(from);
-    case 2: return load<std::uint16_t>(from);
-    case 4: return load<std::uint32_t>(from);
-    default: return load<std::uint64_t>(from);
+    case 1:
+      return load<std::uint8_t>(from);
+    case 2:
+      return load<std::uint16_t>(from);
+    case 4:
+      return load<std::uint32_t>(from);
+    default:
+      return load<std::uint64_t>(from);
   }
 }
 
 std::int64_t load_signed(const void* from, std::size_t size_bytes) {
   switch (size_bytes) {
-    case 1: return load<std::int8_t>(from);
-    case 2: return load<std::int16_t>(from);
-    case 4: return load<std::int32_t>(from);
-    default: return load<std::int64_t>(from);
+    case 1:
+      return load<std::int8_t>(from);
+    case 2:
+      return load<std::int16_t>(from);
+    case 4:
+      return load<std::int32_t>(from);
+    default:
+      return load<std::int64_t>(from);
   }
 }
 
@@ -241,10 +283,12 @@ const Field* find_field(const Schema& schema, std::string_view name) {
 json read_field(const Field& f, const void* component) {
   const void* from = f.address(const_cast<void*>(component));  // only read
   switch (f.type) {
-    case FieldType::boolean: return load<bool>(from);
+    case FieldType::boolean:
+      return load<bool>(from);
     case FieldType::integer:
       return f.is_signed ? json(load_signed(from, f.size_bytes)) : json(load_unsigned(from, f.size_bytes));
-    case FieldType::real: return f.size_bytes == sizeof(double) ? load<double>(from) : load<float>(from);
+    case FieldType::real:
+      return f.size_bytes == sizeof(double) ? load<double>(from) : load<float>(from);
     case FieldType::vec2: {
       const auto v = load<glm::vec2>(from);
       return json::array({v.x, v.y});
@@ -258,7 +302,8 @@ json read_field(const Field& f, const void* component) {
       const auto q = load<glm::quat>(from);
       return json::array({q.x, q.y, q.z, q.w});
     }
-    case FieldType::text: return *static_cast<const std::string*>(from);
+    case FieldType::text:
+      return *static_cast<const std::string*>(from);
     case FieldType::choice: {
       const std::uint64_t i = load_unsigned(from, f.size_bytes);
       return i < f.choices.size() ? json(std::string(f.choices[i])) : json(nullptr);

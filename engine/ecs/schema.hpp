@@ -24,14 +24,14 @@ namespace petrichor {
 enum class FieldType { boolean, integer, real, vec2, vec3, colour, rotation, text, choice };
 
 struct Field {
-  std::string_view name;     // snake_case with its unit: "rain_mm_per_hour"
+  std::string_view name;  // snake_case with its unit: "rain_mm_per_hour"
   FieldType type;
-  std::string_view unit;     // "mm/h", "" where none
-  double minimum;            // inclusive range of a number (each element of a vector)
+  std::string_view unit;  // "mm/h", "" where none
+  double minimum;         // inclusive range of a number (each element of a vector)
   double maximum;
   std::string_view meaning;  // one sentence for people
   std::span<const std::string_view> choices;
-  std::size_t size_bytes;    // of the member; tells int32 from uint32/uint64 together with is_signed
+  std::size_t size_bytes;  // of the member; tells int32 from uint32/uint64 together with is_signed
   bool is_signed;
   void* (*address)(void* component);
 };
@@ -52,15 +52,23 @@ namespace detail {
 
 template <class T>
 constexpr FieldType field_type() {
-  if constexpr (std::is_same_v<T, bool>) return FieldType::boolean;
-  else if constexpr (std::is_enum_v<T>) return FieldType::choice;
-  else if constexpr (std::is_integral_v<T>) return FieldType::integer;
-  else if constexpr (std::is_floating_point_v<T>) return FieldType::real;
-  else if constexpr (std::is_same_v<T, glm::vec2>) return FieldType::vec2;
-  else if constexpr (std::is_same_v<T, glm::vec3>) return FieldType::vec3;
-  else if constexpr (std::is_same_v<T, glm::quat>) return FieldType::rotation;
+  if constexpr (std::is_same_v<T, bool>)
+    return FieldType::boolean;
+  else if constexpr (std::is_enum_v<T>)
+    return FieldType::choice;
+  else if constexpr (std::is_integral_v<T>)
+    return FieldType::integer;
+  else if constexpr (std::is_floating_point_v<T>)
+    return FieldType::real;
+  else if constexpr (std::is_same_v<T, glm::vec2>)
+    return FieldType::vec2;
+  else if constexpr (std::is_same_v<T, glm::vec3>)
+    return FieldType::vec3;
+  else if constexpr (std::is_same_v<T, glm::quat>)
+    return FieldType::rotation;
   else {
-    static_assert(std::is_same_v<T, std::string>, "a schema field must be a bool, number, vec2, vec3, quat, string or enum");
+    static_assert(std::is_same_v<T, std::string>,
+                  "a schema field must be a bool, number, vec2, vec3, quat, string or enum");
     return FieldType::text;
   }
 }
@@ -86,10 +94,16 @@ Field field(std::string_view name, std::string_view unit, Range range, std::stri
             std::span<const std::string_view> choices = {}) {
   using M = detail::MemberOf<decltype(Member)>;
   using T = typename M::Value;
-  return Field{name, detail::field_type<T>(), unit, range.minimum, range.maximum, meaning, choices, sizeof(T),
-               std::is_signed_v<T>, [](void* component) -> void* {
-                 return &(static_cast<typename M::Component*>(component)->*Member);
-               }};
+  return Field{name,
+               detail::field_type<T>(),
+               unit,
+               range.minimum,
+               range.maximum,
+               meaning,
+               choices,
+               sizeof(T),
+               std::is_signed_v<T>,
+               [](void* component) -> void* { return &(static_cast<typename M::Component*>(component)->*Member); }};
 }
 
 // As field(), for a vec3 that is a linear RGB colour.
@@ -103,7 +117,9 @@ Field colour(std::string_view name, std::string_view unit, Range range, std::str
 
 template <class Component>
 Schema schema(std::string_view name, std::string_view meaning, std::vector<Field> fields) {
-  return Schema{name, meaning, std::move(fields),
+  return Schema{name,
+                meaning,
+                std::move(fields),
                 [](Registry& r, Entity e) -> void* {
                   if (auto* c = r.find<Component>(e)) return c;
                   return &r.emplace<Component>(e);

@@ -13,9 +13,12 @@ std::string cell(std::string_view text) {
   std::string out;
   for (const char c : text) {
     if (c == '|' || c == '\\') out += '\\';
-    if (c == '<') out += "&lt;";
-    else if (c == '\n') out += ' ';
-    else out += c;
+    if (c == '<')
+      out += "&lt;";
+    else if (c == '\n')
+      out += ' ';
+    else
+      out += c;
   }
   return out;
 }
@@ -35,15 +38,24 @@ std::string shortest(const nlohmann::json& value, bool is_single) {
 
 std::string field_type_words(const Field& f) {
   switch (f.type) {
-    case FieldType::boolean: return "true or false";
-    case FieldType::integer: return "whole number";
-    case FieldType::real: return "number";
-    case FieldType::vec2: return "[x, y]";
-    case FieldType::vec3: return "[x, y, z]";
-    case FieldType::colour: return "[r, g, b], linear";
-    case FieldType::rotation: return "[x, y, z, w], unit quaternion";
-    case FieldType::text: return "text";
-    case FieldType::choice: break;
+    case FieldType::boolean:
+      return "true or false";
+    case FieldType::integer:
+      return "whole number";
+    case FieldType::real:
+      return "number";
+    case FieldType::vec2:
+      return "[x, y]";
+    case FieldType::vec3:
+      return "[x, y, z]";
+    case FieldType::colour:
+      return "[r, g, b], linear";
+    case FieldType::rotation:
+      return "[x, y, z, w], unit quaternion";
+    case FieldType::text:
+      return "text";
+    case FieldType::choice:
+      break;
   }
   std::string out;
   for (std::size_t i = 0; i < f.choices.size(); ++i) {

@@ -49,15 +49,19 @@ class Storage final : public SparseSet {
   const T* find(Entity e) const { return const_cast<Storage*>(this)->find(e); }
 
   T* data() {
-    if constexpr (is_tag) return &tag_;
-    else return values_.data();
+    if constexpr (is_tag)
+      return &tag_;
+    else
+      return values_.data();
   }
   const T* data() const { return const_cast<Storage*>(this)->data(); }
 
   template <class U>  // T or const T
   static U& element(U* data, std::uint32_t position) {
-    if constexpr (is_tag) return *data;
-    else return data[position];
+    if constexpr (is_tag)
+      return *data;
+    else
+      return data[position];
   }
 
   // less(const T&, const T&) or less(Entity, Entity); stable.
@@ -123,8 +127,10 @@ class Storage final : public SparseSet {
  private:
   template <class... Args>
   static T make(Args&&... args) {
-    if constexpr (std::is_constructible_v<T, Args...>) return T(std::forward<Args>(args)...);
-    else return T{std::forward<Args>(args)...};
+    if constexpr (std::is_constructible_v<T, Args...>)
+      return T(std::forward<Args>(args)...);
+    else
+      return T{std::forward<Args>(args)...};
   }
 
   struct Nothing {};

@@ -39,8 +39,10 @@ class View<TypeList<A...>, TypeList<C...>> {
   template <class Fn>
   void each(Fn&& fn) const {
     each_while([&](Entity e, A&... values) {
-      if constexpr (std::is_invocable_v<Fn&, Entity, A&...>) fn(e, values...);
-      else fn(values...);
+      if constexpr (std::is_invocable_v<Fn&, Entity, A&...>)
+        fn(e, values...);
+      else
+        fn(values...);
       return true;
     });
   }
@@ -108,7 +110,8 @@ class View<TypeList<A...>, TypeList<C...>> {
 #endif
     [&]<std::size_t... I>(std::index_sequence<I...>) {
       ((lead == I && (walk<I>(fn, Indices{}), true)) || ...);
-    }(Indices{});
+    }
+    (Indices{});
   }
 
   // The leading storage proves that its entities are alive, so the other storages are asked by index

@@ -38,15 +38,23 @@ json other_value(const Field& f, const json& present) {
   const double high = std::isfinite(f.maximum) ? f.maximum : 100.0;
   const auto between = [&](double share) { return static_cast<float>(low + share * (high - low)); };
   switch (f.type) {
-    case FieldType::boolean: return !present.get<bool>();
-    case FieldType::integer: return static_cast<std::int64_t>(low + 0.25 * (high - low));
-    case FieldType::real: return between(0.25);
-    case FieldType::vec2: return {between(0.25), between(0.75)};
+    case FieldType::boolean:
+      return !present.get<bool>();
+    case FieldType::integer:
+      return static_cast<std::int64_t>(low + 0.25 * (high - low));
+    case FieldType::real:
+      return between(0.25);
+    case FieldType::vec2:
+      return {between(0.25), between(0.75)};
     case FieldType::vec3:
-    case FieldType::colour: return {between(0.25), between(0.5), between(0.75)};
-    case FieldType::rotation: return {0.0, 1.0, 0.0, 0.0};
-    case FieldType::text: return "the corner of the toy shop";
-    case FieldType::choice: return std::string(f.choices.back());
+    case FieldType::colour:
+      return {between(0.25), between(0.5), between(0.75)};
+    case FieldType::rotation:
+      return {0.0, 1.0, 0.0, 0.0};
+    case FieldType::text:
+      return "the corner of the toy shop";
+    case FieldType::choice:
+      return std::string(f.choices.back());
   }
   return nullptr;
 }
@@ -54,7 +62,8 @@ json other_value(const Field& f, const json& present) {
 TEST_P(EverySchema, NamesAreSnakeCaseAndDescribed) {
   const auto is_snake = [](std::string_view name) {
     for (const char c : name) {
-      if (!std::islower(static_cast<unsigned char>(c)) && !std::isdigit(static_cast<unsigned char>(c)) && c != '_') return false;
+      if (!std::islower(static_cast<unsigned char>(c)) && !std::isdigit(static_cast<unsigned char>(c)) && c != '_')
+        return false;
     }
     return !name.empty();
   };
@@ -106,8 +115,12 @@ TEST_P(EverySchema, WrongTypesAndRangesAreRefused) {
     refused(f, json::object());
     const json inside = other_value(f, read_field(f, component));
     switch (f.type) {
-      case FieldType::boolean: refused(f, 1); break;
-      case FieldType::text: refused(f, 5); break;
+      case FieldType::boolean:
+        refused(f, 1);
+        break;
+      case FieldType::text:
+        refused(f, 5);
+        break;
       case FieldType::choice:
         EXPECT_NE(refused(f, "no such choice").find(f.choices.front()), std::string::npos);
         refused(f, 0);
@@ -172,7 +185,8 @@ TEST(Schemas, ReferenceShowsEveryFieldAndReadableDefaults) {
   const std::string page = schema_reference(component_schemas());
   for (const Schema& s : component_schemas()) {
     EXPECT_NE(page.find("\n## " + std::string(s.name) + "\n"), std::string::npos) << s.name;
-    for (const Field& f : s.fields) EXPECT_NE(page.find("| `" + std::string(f.name) + "` |"), std::string::npos) << f.name;
+    for (const Field& f : s.fields)
+      EXPECT_NE(page.find("| `" + std::string(f.name) + "` |"), std::string::npos) << f.name;
   }
   // The bloom of a fresh camera, as its header writes it.
   const std::string bloom = page.substr(page.find("| `bloom` |"), 40);

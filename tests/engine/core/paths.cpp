@@ -19,12 +19,16 @@ class Environment {
  public:
   Environment(const char* name, const char* value) : name_(name) {
     if (const char* was = std::getenv(name)) was_ = was;
-    if (value) ::setenv(name, value, 1);
-    else ::unsetenv(name);
+    if (value)
+      ::setenv(name, value, 1);
+    else
+      ::unsetenv(name);
   }
   ~Environment() {
-    if (was_) ::setenv(name_, was_->c_str(), 1);
-    else ::unsetenv(name_);
+    if (was_)
+      ::setenv(name_, was_->c_str(), 1);
+    else
+      ::unsetenv(name_);
   }
 
  private:
@@ -95,13 +99,15 @@ TEST_F(Paths, RefusalsSayWhy) {
 
 TEST_F(Paths, ReadOnlyFolder) {
   ASSERT_TRUE(write_whole_file(folder_ / "kept", "old"));
-  fs::permissions(folder_, fs::perms::owner_read | fs::perms::owner_exec | fs::perms::others_read | fs::perms::others_exec);
+  fs::permissions(folder_,
+                  fs::perms::owner_read | fs::perms::owner_exec | fs::perms::others_read | fs::perms::others_exec);
   const bool was_root = ::geteuid() == 0;  // root may write anywhere, so root does this as nobody
   if (was_root && ::seteuid(65534) != 0) GTEST_SKIP() << "cannot stop being root";
   const Result<void> result = write_whole_file(folder_ / "kept", "new");
   if (was_root && ::seteuid(0) != 0) std::abort();  // later tests must not run as nobody
   ASSERT_FALSE(result);
-  EXPECT_NE(result.error().message.find("Permission denied; choose a folder"), std::string::npos) << result.error().message;
+  EXPECT_NE(result.error().message.find("Permission denied; choose a folder"), std::string::npos)
+      << result.error().message;
   EXPECT_EQ(read_whole_file(folder_ / "kept").value(), "old");
 }
 
@@ -151,7 +157,8 @@ TEST_F(Paths, DataRootsWithoutTheVariable) {
 TEST_F(Paths, UserFoldersFollowXdg) {
   const Environment home("HOME", "/home/someone");
   {
-    const Environment config("XDG_CONFIG_HOME", "/etc/mine"), cache("XDG_CACHE_HOME", nullptr), state("XDG_STATE_HOME", "relative");
+    const Environment config("XDG_CONFIG_HOME", "/etc/mine"), cache("XDG_CACHE_HOME", nullptr),
+        state("XDG_STATE_HOME", "relative");
     EXPECT_EQ(user_config_dir(), "/etc/mine/petrichor");
     EXPECT_EQ(user_cache_dir(), "/home/someone/.cache/petrichor");
     EXPECT_EQ(user_state_dir(), "/home/someone/.local/state/petrichor") << "a relative value is ignored";

@@ -21,8 +21,10 @@ TEST(Commands, ChangeDuringAViewWaitsForApply) {
   r.view<Drop>().each([&](Entity e, Drop& d) {
     ++met;
     commands.emplace<Drop>(commands.create(), d.generation + 1);
-    if (met % 2) commands.destroy(e);
-    else commands.emplace<Wet>(e);
+    if (met % 2)
+      commands.destroy(e);
+    else
+      commands.emplace<Wet>(e);
   });
   EXPECT_EQ(met, 100);
   EXPECT_EQ(r.size<Drop>(), 100u);

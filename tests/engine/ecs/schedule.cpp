@@ -67,10 +67,10 @@ TEST(Schedule, RunsARangeOfPhases) {
 TEST(Schedule, SyncPoint) {
   const std::vector<SystemAccess> list{
       {.name = "spawn", .writes = {"lamp"}, .changes = {"puddle"}},
-      {.name = "shine", .reads = {"lamp"}},                      // not what spawn changed
+      {.name = "shine", .reads = {"lamp"}},                        // not what spawn changed
       {.name = "more", .reads = {"lamp"}, .changes = {"puddle"}},  // commands keep their own order
-      {.name = "fill", .reads = {"puddle"}},                     // needs both applied
-      {.name = "drain", .writes = {"puddle"}},                   // already applied
+      {.name = "fill", .reads = {"puddle"}},                       // needs both applied
+      {.name = "drain", .writes = {"puddle"}},                     // already applied
       {.name = "script", .changes = {"*"}},
       {.name = "clock", .reads = {}},  // touches nothing
       {.name = "shine again", .reads = {"lamp"}},
@@ -82,10 +82,14 @@ TEST(Schedule, CommandsArriveExactlyAtTheSyncPoint) {
   Context c;
   std::vector<std::size_t> seen;
   const auto look = [&](Context& x) { seen.push_back(x.registry.size<Puddle>()); };
-  run({{.name = "spawn", .changes = {"puddle"}, .run = [](Context& x) { x.commands.emplace<Puddle>(x.commands.create()); }},
+  run({{.name = "spawn",
+        .changes = {"puddle"},
+        .run = [](Context& x) { x.commands.emplace<Puddle>(x.commands.create()); }},
        {.name = "blind", .reads = {"lamp"}, .run = look},
        {.name = "reader", .reads = {"puddle"}, .run = look},
-       {.name = "late", .changes = {"puddle"}, .run = [](Context& x) { x.commands.emplace<Puddle>(x.commands.create()); }}},
+       {.name = "late",
+        .changes = {"puddle"},
+        .run = [](Context& x) { x.commands.emplace<Puddle>(x.commands.create()); }}},
       c);
   EXPECT_EQ(seen, (std::vector<std::size_t>{0, 1}));
   EXPECT_EQ(c.registry.size<Puddle>(), 2u) << "what is left is applied at the end";
@@ -114,7 +118,9 @@ TEST(Schedule, IdleSystemsAreSkipped) {
 
 TEST(Schedule, AnIdleSystemWakesForWhatWasJustSpawned) {
   Context c;
-  EXPECT_EQ(run({{.name = "spawn", .changes = {"lamp"}, .run = [](Context& x) { x.commands.emplace<Lamp>(x.commands.create()); }},
+  EXPECT_EQ(run({{.name = "spawn",
+                  .changes = {"lamp"},
+                  .run = [](Context& x) { x.commands.emplace<Lamp>(x.commands.create()); }},
                  {.name = "lamps", .needs = {"lamp"}, .run = note("lamps")}},
                 c),
             (std::vector<std::string>{"lamps"}));
@@ -146,7 +152,9 @@ TEST(Schedule, Dependencies) {
             Pairs{});
   EXPECT_EQ(pairs({{.name = "a", .phase = Phase::script, .writes = {"x"}}, {.name = "b", .reads = {"x"}}}), Pairs{});
   // Being after a third settles nothing between the two.
-  EXPECT_EQ(pairs({{.name = "z"}, {.name = "a", .writes = {"x"}, .after = {"z"}}, {.name = "b", .reads = {"x"}, .after = {"z"}}}),
+  EXPECT_EQ(pairs({{.name = "z"},
+                   {.name = "a", .writes = {"x"}, .after = {"z"}},
+                   {.name = "b", .reads = {"x"}, .after = {"z"}}}),
             Pairs{"a|b|x"});
 }
 

@@ -36,10 +36,12 @@ const Schema& everything() {
   static const Schema s = schema<Everything>(
       "everything", "One of each.",
       {field<&Everything::flag>("flag", "", any, "A flag."), field<&Everything::tiny>("tiny", "", any, "8 bits."),
-       field<&Everything::small>("small", "", {0, 1000}, "16 bits."), field<&Everything::wide>("wide", "", any, "64 bits."),
-       field<&Everything::wider>("wider", "", any, "64 bits."), field<&Everything::real>("real", "m", {0.1, 0.7}, "Single."),
+       field<&Everything::small>("small", "", {0, 1000}, "16 bits."),
+       field<&Everything::wide>("wide", "", any, "64 bits."), field<&Everything::wider>("wider", "", any, "64 bits."),
+       field<&Everything::real>("real", "m", {0.1, 0.7}, "Single."),
        field<&Everything::exact>("exact", "", any, "Double."), field<&Everything::flat>("flat", "", any, "Two."),
-       field<&Everything::turn>("turn", "", {-1, 1}, "A rotation."), field<&Everything::shape>("shape", "", any, "A choice.", shapes),
+       field<&Everything::turn>("turn", "", {-1, 1}, "A rotation."),
+       field<&Everything::shape>("shape", "", any, "A choice.", shapes),
        field<&Everything::text>("text", "", any, "Words | bars.")});
   return s;
 }
@@ -47,7 +49,9 @@ const Schema& everything() {
 Result<void> write(Everything& e, std::string_view name, const json& value) {
   return write_field(everything(), *find_field(everything(), name), &e, value);
 }
-std::string message(const Result<void>& r) { return r ? "no error" : r.error().message; }
+std::string message(const Result<void>& r) {
+  return r ? "no error" : r.error().message;
+}
 
 TEST(Schema, FindsByName) {
   const std::vector<Schema> all{everything()};
@@ -114,12 +118,14 @@ TEST(Schema, MessagesSayWhatCameAndWhatWasExpected) {
   EXPECT_EQ(message(write(e, "real", -3)), "everything.real: got -3, expected a finite number from 0.1 to 0.7 m");
   EXPECT_EQ(message(write(e, "flag", "yes")), "everything.flag: got the string \"yes\", expected true or false");
   EXPECT_EQ(message(write(e, "shape", "falt")),
-            "everything.shape: got the string \"falt\", expected one of \"round\", \"flat\", \"torn\"; did you mean \"flat\"?");
+            "everything.shape: got the string \"falt\", expected one of \"round\", \"flat\", \"torn\"; did you mean "
+            "\"flat\"?");
   EXPECT_NE(message(write(e, "flat", json::array({0, NAN}))).find("flat[1]: got nan"), std::string::npos);
   EXPECT_NE(message(write(e, "real", std::string(100000, 'x'))).find("100000 bytes"), std::string::npos);
   EXPECT_LT(message(write(e, "real", std::string(100000, 'x'))).size(), 400u) << "a message, not the whole value";
   const std::string unknown = message(write_fields(everything(), &e, {{"reel", 1}}));
-  EXPECT_EQ(unknown.rfind("everything has no field \"reel\"; did you mean \"real\"? Known: flag, tiny", 0), 0u) << unknown;
+  EXPECT_EQ(unknown.rfind("everything has no field \"reel\"; did you mean \"real\"? Known: flag, tiny", 0), 0u)
+      << unknown;
 }
 
 TEST(Schema, WriteFieldsIsAllOrNothing) {

@@ -7,7 +7,9 @@
 namespace petrichor {
 namespace {
 
-Entity at(std::uint32_t index) { return make_entity(index, 0); }
+Entity at(std::uint32_t index) {
+  return make_entity(index, 0);
+}
 
 void push_all(SparseSet& set, std::vector<std::uint32_t> indices) {
   for (const std::uint32_t i : indices) set.push(at(i));

@@ -12,7 +12,9 @@
 namespace petrichor {
 namespace {
 
-Entity at(std::uint32_t index) { return make_entity(index, 0); }
+Entity at(std::uint32_t index) {
+  return make_entity(index, 0);
+}
 
 TEST(Storage, EmplaceAggregate) {
   struct Aggregate {
