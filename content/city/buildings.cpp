@@ -68,11 +68,11 @@ Style make_style(Dice& dice) {
   return s;
 }
 
-void side_walls(Builder& b, const Style& style, float w, float depth, float eaves) {
+void side_walls(Builder& b, const Style& style, float w, float depth, float back_from, float eaves) {
   const Paint blind = tiling(Mat::stucco, style.wall.mat == Mat::stucco ? style.wall.colour * 0.6f : glm::vec3(0.4f, 0.36f, 0.32f));
   b.quad(blind, {0, 0, -depth}, {0, 0, 0}, {0, eaves, 0}, {0, eaves, -depth});
   b.quad(blind, {w, 0, 0}, {w, 0, -depth}, {w, eaves, -depth}, {w, eaves, 0});
-  b.quad(blind, {w, 0, -depth}, {0, 0, -depth}, {0, eaves, -depth}, {w, eaves, -depth});
+  b.quad(blind, {w, back_from, -depth}, {0, back_from, -depth}, {0, eaves, -depth}, {w, eaves, -depth});
 }
 
 glm::vec3 roof_tint(Dice& dice) { return glm::vec3(1.0f, dice.between(0.85f, 1.0f), dice.between(0.8f, 1.0f)) * dice.between(0.7f, 1.0f); }
@@ -85,7 +85,7 @@ void add_house(Scene& scene, const std::string& name, const glm::mat4& frame, co
   Builder b(mesh);
   facade(b, style, f, dice);
   const float eaves = eaves_height_m(style);
-  side_walls(b, style, f.width_m, depth, eaves);
+  side_walls(b, style, f.width_m, depth, f.ground == Ground::none ? style.ground_height_m : 0.0f, eaves);
   const RoofSpan span{f.width_m, depth, eaves};
   const glm::vec3 tint = roof_tint(dice);
   switch (style.roof) {
@@ -101,6 +101,10 @@ void add_house(Scene& scene, const std::string& name, const glm::mat4& frame, co
     mark_drip(scene, node, glm::translate(glm::mat4(1.0f), {0.0f, eaves - 0.1f, z}), f.width_m, 0.5f * depth, 2.0f);
   } else {
     mark_drip(scene, node, glm::translate(glm::mat4(1.0f), {0.0f, eaves - 0.05f, 0.5f}), f.width_m, 0.5f, 3.0f);
+  }
+  if (f.ground == Ground::shop && std::abs(frame[3].x) < 36.0f && std::abs(frame[3].z) < 36.0f) {
+    add_light(scene, name + "_window", parent, glm::vec3(frame * glm::vec4(0.5f * f.width_m, 2.1f, 1.0f, 1.0f)),
+              {{1.0f, 0.72f, 0.42f}, 46.0f, 9.0f, 0, 0, false, 0.6f});
   }
   if (f.awning) mark_drip(scene, node, glm::translate(glm::mat4(1.0f), {0.35f, 2.0f, 1.5f}), f.width_m - 0.7f, 1.5f, 1.5f);
 }
@@ -218,6 +222,11 @@ void add_corner(Scene& scene, const std::string& name, int sx, int sz, Style sty
   chimney(world, up(0.5f * (a + e), eaves + rise - 0.3f), 2.0f, 3);
   chimney(world, up(0.5f * (c + e), eaves + rise - 0.3f), 2.0f, 2);
   const int node = add_node(scene, name, parent, scene.add_mesh(std::move(mesh)));
+  for (std::size_t k = 0; k < 3; k += 2) {
+    if (grounds[k].ground != Ground::shop) continue;
+    add_light(scene, name + "_window_" + std::to_string(k), parent, glm::vec3(frames[k] * glm::vec4(0.5f * corner_facade_m, 2.1f, 1.0f, 1.0f)),
+              {{1.0f, 0.72f, 0.42f}, 55.0f, 10.0f, 0, 0, false, 0.6f});
+  }
   for (std::size_t k = 0; k < 3; ++k) {
     mark_drip(scene, node, frames[k] * glm::translate(glm::mat4(1.0f), {0.0f, eaves - 0.1f, 0.53f}), glm::length(line[k + 1] - line[k]), 2.0f, 2.0f);
   }
@@ -288,7 +297,10 @@ void add_buildings(Scene& scene) {
   Facade gate;
   gate.ground = Ground::gate;
   gate.width_m = 2.0f * main_wall_m;
-  add_house(scene, "north_gate", wall_frame({-main_wall_m, 0, -street_end_m}, {0, 0, 1}), end, gate, house_depth_m, 401);
+  end.ground_height_m = gate_ground_m;
+  Facade arch = gate;
+  arch.ground = Ground::none;
+  add_house(scene, "north_gate", wall_frame({-main_wall_m, 0, -street_end_m}, {0, 0, 1}), end, arch, house_depth_m, 401);
   Style hotel = corner_style(Mat::brick, glm::vec3(0.9f), Head::hood, 5);
   hotel.roof = Roof::mansard;
   hotel.lit = 0.45f;

@@ -75,11 +75,11 @@ void wheel(Builder& b, float x, float z, float side) {
   const Paint rubber = plain(glm::vec3(0.012f), Finish::rubber);
   const Paint chrome = plain(glm::vec3(0.55f), Finish::chrome);
   const auto at = [&](float offset) { return glm::vec3(x + side * offset, wheel_m, z); };
-  b.cylinder(rubber, at(-0.17f), at(0.0f), wheel_m, wheel_m, 16);
-  b.cylinder(rubber, at(0.0f), at(0.022f), wheel_m, wheel_m - 0.045f, 16);
-  b.cylinder(rubber, at(0.022f), at(0.0f), wheel_m - 0.045f, 0.17f, 16);
-  b.cylinder(plain(glm::vec3(0.16f), Finish::steel), at(0.004f), at(0.03f), 0.185f, 0.16f, 12, false, true);
-  b.cylinder(chrome, at(0.03f), at(0.055f), 0.11f, 0.03f, 10, false, true);
+  b.cylinder(rubber, at(-0.17f), at(0.0f), wheel_m, wheel_m, 12);
+  b.cylinder(rubber, at(0.0f), at(0.022f), wheel_m, wheel_m - 0.045f, 12);
+  b.cylinder(rubber, at(0.022f), at(0.0f), wheel_m - 0.045f, 0.17f, 12);
+  b.cylinder(plain(glm::vec3(0.16f), Finish::steel), at(0.004f), at(0.03f), 0.185f, 0.16f, 10, false, true);
+  b.cylinder(chrome, at(0.03f), at(0.055f), 0.11f, 0.03f, 8, false, true);
 }
 
 void arch(Builder& b, float x, float z, float side) {
@@ -107,8 +107,8 @@ Mesh car_mesh(const std::string& name, const CarShape& shape, glm::vec3 colour, 
   const Paint glass = plain(glm::vec3(0.006f, 0.008f, 0.009f), Finish::gloss);
   const Paint chrome = plain(glm::vec3(0.55f), Finish::chrome);
   const Paint black = plain(glm::vec3(0.01f), Finish::rubber);
-  b.surface(paint, 14, 22, [&](float u, float v) { return body.shell(1.0f - u, v); });
-  b.surface(paint, 12, 14, [&](float u, float v) { return body.cabin(1.0f - u, v); });
+  b.surface(paint, 12, 18, [&](float u, float v) { return body.shell(1.0f - u, v); });
+  b.surface(paint, 10, 11, [&](float u, float v) { return body.cabin(1.0f - u, v); });
   // Windows: patches of the cabin lifted a little.
   const auto pane = [&](float u0, float u1, float v0, float v1, int nu, int nv) {
     b.surface(glass, nu, nv, [&](float u, float v) { return body.cabin(u1 + (u0 - u1) * u, v0 + (v1 - v0) * v, 0.012f); });

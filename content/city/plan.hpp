@@ -12,6 +12,7 @@ inline constexpr float lane_wall_m = 6.5f;      // building line of the cross st
 inline constexpr float street_end_m = 60.0f;
 inline constexpr float corner_cut_m = 3.0f;     // corner houses are cut at 45 degrees
 inline constexpr float kerb_radius_m = 3.0f;
+inline constexpr float gate_ground_m = 5.0f;    // ground floor of the gate house over the north end
 inline constexpr float kerb_m = 0.12f;
 inline constexpr float pavement_fall = 0.02f;   // pavements drain to the kerb
 

@@ -24,9 +24,10 @@ void sphere(Builder& b, const Paint& paint, glm::vec3 centre, glm::vec3 radii, i
 
 void ball(Builder b, float size, glm::vec3 a, glm::vec3 c) {
   const float r = 0.5f * size;
-  const int gores = 8;
+  const int gores = size < 0.35f ? 6 : 8;
+  const int rows = size < 0.35f ? 3 : 5;
   for (int k = 0; k < gores; ++k) {
-    b.surface(plain((k & 1) ? a : c, Finish::gloss), 1, 5, [&](float u, float v) {
+    b.surface(plain((k & 1) ? a : c, Finish::gloss), 1, rows, [&](float u, float v) {
       const float t = 6.2831853f * (static_cast<float>(k) + u) / gores;
       const float e = 3.14159265f * (v - 0.5f);
       return glm::vec3(0, r, 0) + r * glm::vec3(std::cos(e) * std::sin(t), std::sin(e), std::cos(e) * std::cos(t));
@@ -38,6 +39,15 @@ void bear(Builder b, float s, glm::vec3 fur) {
   const Paint f = plain(fur, Finish::matte);
   const Paint pale = plain(glm::min(fur * 1.7f + glm::vec3(0.05f), glm::vec3(0.8f)), Finish::matte);
   const Paint dark = plain(glm::vec3(0.01f), Finish::gloss);
+  if (s < 0.5f) {  // on a shelf: no more than can be seen from the street
+    sphere(b, f, glm::vec3(0, 0.30f, 0) * s, glm::vec3(0.24f, 0.30f, 0.2f) * s, 6, 4);
+    sphere(b, f, glm::vec3(0, 0.74f, 0.02f) * s, glm::vec3(0.21f, 0.19f, 0.18f) * s, 6, 4);
+    for (float x : {-1.0f, 1.0f}) {
+      b.box(f, glm::vec3(0.16f * x - 0.06f, 0.82f, -0.04f) * s, glm::vec3(0.16f * x + 0.06f, 0.97f, 0.04f) * s, face_no_bottom & ~face_back);
+      b.box(f, glm::vec3(0.15f * x - 0.08f, 0.0f, 0.05f) * s, glm::vec3(0.15f * x + 0.08f, 0.15f, 0.36f) * s, face_no_bottom & ~face_back);
+    }
+    return;
+  }
   sphere(b, f, glm::vec3(0, 0.33f, 0) * s, glm::vec3(0.24f, 0.29f, 0.2f) * s);
   sphere(b, pale, glm::vec3(0, 0.32f, 0.07f) * s, glm::vec3(0.16f, 0.2f, 0.15f) * s, 7, 4);
   sphere(b, f, glm::vec3(0, 0.74f, 0.02f) * s, glm::vec3(0.21f, 0.19f, 0.18f) * s);
@@ -97,8 +107,8 @@ void drum(Builder b, float s, glm::vec3 colour) {
 
 void soldier(Builder b, float s, glm::vec3 coat) {
   const Paint blue = plain({0.02f, 0.03f, 0.10f}, Finish::gloss);
-  for (float x : {-0.06f, 0.06f}) b.cylinder(blue, {x * s, 0, 0}, {x * s, 0.36f * s, 0}, 0.05f * s, 0.055f * s, 6);
-  b.cylinder(plain(coat, Finish::gloss), {0, 0.34f * s, 0}, {0, 0.66f * s, 0}, 0.13f * s, 0.15f * s, 8, false, true);
+  for (float x : {-0.06f, 0.06f}) b.cylinder(blue, {x * s, 0, 0}, {x * s, 0.36f * s, 0}, 0.05f * s, 0.055f * s, 5);
+  b.cylinder(plain(coat, Finish::gloss), {0, 0.34f * s, 0}, {0, 0.66f * s, 0}, 0.13f * s, 0.15f * s, 6, false, true);
   for (float x : {-0.18f, 0.18f}) b.cylinder(plain(coat, Finish::gloss), {x * s, 0.36f * s, 0}, {x * s, 0.64f * s, 0}, 0.04f * s, 0.05f * s, 6, false, true);
   sphere(b, plain({0.62f, 0.42f, 0.30f}, Finish::gloss), glm::vec3(0, 0.75f, 0) * s, glm::vec3(0.09f) * s, 7, 4);
   b.cylinder(plain(glm::vec3(0.012f), Finish::matte), {0, 0.79f * s, 0}, {0, 1.0f * s, 0}, 0.1f * s, 0.09f * s, 8, false, true);
