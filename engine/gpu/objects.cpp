@@ -46,16 +46,6 @@ void upload(Buffer& buffer, const void* data, std::size_t bytes) {
   glNamedBufferSubData(buffer.id, 0, static_cast<GLsizeiptr>(bytes), data);
 }
 
-void clear_buffer(const Buffer& buffer) {
-  if (buffer.bytes == 0) return;
-  const GLuint zero = 0;
-  if (buffer.bytes % 4 == 0) {
-    glClearNamedBufferData(buffer.id, GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, &zero);
-  } else {
-    glClearNamedBufferData(buffer.id, GL_R8UI, GL_RED_INTEGER, GL_UNSIGNED_BYTE, &zero);
-  }
-}
-
 void read_buffer(const Buffer& buffer, void* data, std::size_t bytes, std::size_t offset) {
   assert(offset + bytes <= buffer.bytes);
   if (bytes == 0) return;
@@ -104,21 +94,6 @@ Texture make_texture_cube(int size, GLenum internal_format, int levels) {
 
 int full_mip_levels(int width, int height) {
   return std::bit_width(static_cast<unsigned>(std::max({width, height, 1})));
-}
-
-void clear_texture(const Texture& texture, const std::array<float, 4>& value) {
-  const FormatInfo* info = find_format(texture.format);
-  for (int level = 0; level < texture.levels; ++level) {
-    if (info && info->depth) {
-      glClearTexImage(texture.id, level, GL_DEPTH_COMPONENT, GL_FLOAT, value.data());
-    } else if (info && info->integer) {
-      const std::array<GLint, 4> whole{static_cast<GLint>(value[0]), static_cast<GLint>(value[1]),
-                                       static_cast<GLint>(value[2]), static_cast<GLint>(value[3])};
-      glClearTexImage(texture.id, level, GL_RGBA_INTEGER, GL_INT, whole.data());
-    } else {
-      glClearTexImage(texture.id, level, GL_RGBA, GL_FLOAT, value.data());
-    }
-  }
 }
 
 Framebuffer make_framebuffer(std::span<const GLuint> colour_textures, GLuint depth_texture) {

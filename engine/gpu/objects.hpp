@@ -68,7 +68,10 @@ template <class T>
 void upload(Buffer& buffer, std::span<const T> values) {
   upload(buffer, values.data(), values.size_bytes());
 }
-void clear_buffer(const Buffer&);  // to zero
+// How to clear. On GPUs a compute shader is much the fastest: 15 MB in 0.008 ms on an H200, against 0.35 to 1.9 ms of
+// glClearNamedBufferData; on software OpenGL (and for little data) the command is. `fastest` knows.
+enum class ClearBy { fastest, command, compute };
+void clear_buffer(const Buffer&, ClearBy = ClearBy::fastest);  // to zero; ordered after and before everything else
 void read_buffer(const Buffer&, void* data, std::size_t bytes, std::size_t offset = 0);
 
 // Immutable storage, clamped to the edge, filtered linearly (integer and depth formats: nearest). Content undefined.
@@ -76,8 +79,8 @@ Texture make_texture_2d(int width, int height, GLenum internal_format, int level
 Texture make_texture_2d_array(int width, int height, int layers, GLenum internal_format, int levels = 1);
 Texture make_texture_cube(int size, GLenum internal_format, int levels = 1);
 int full_mip_levels(int width, int height);
-// All levels and layers. Depth formats take value[0]; integer formats the whole numbers.
-void clear_texture(const Texture&, const std::array<float, 4>& value = {});
+// All levels and layers. Depth formats take value[0]; integer formats the whole numbers. May unbind image unit 7.
+void clear_texture(const Texture&, const std::array<float, 4>& value = {}, ClearBy = ClearBy::fastest);
 
 // Depth and colour attachments of one draw; textures must outlive it. Pass id 0 for no depth.
 Framebuffer make_framebuffer(std::span<const GLuint> colour_textures, GLuint depth_texture);
