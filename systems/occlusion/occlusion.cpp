@@ -10,14 +10,41 @@ namespace {
 
 // Metres to the lattice on which the map's ends lie, so that rounding of the scene's box does not move them.
 constexpr double end_step_m = 8.0;
-constexpr double end_margin_m = 1.0;
+constexpr double end_margin_m = 1.37;  // no round number: roofs and floors are often at whole metres
 
 struct MapState {
   OcclusionPlacement placement;
   std::uint64_t geometry_version = 0;
+  const GpuScene* scene = nullptr;
   bool drawn = false;
   Buffer uniforms;
 };
+
+// Drawn about the map's own middle, not about the camera: rounding, and so every texel, is the same whichever frame
+// happens to draw it. A range of frames is then the same bytes as a part of a longer run.
+void redraw(PassContext& context, const OcclusionPlacement& p) {
+  Frame about_map;
+  about_map.instances = context.frame.instances;
+  about_map.camera.position_m = p.corner_m + glm::dvec3(p.right + p.up) * (0.5 * static_cast<double>(p.side_m)) +
+                                glm::dvec3(p.fall) * (0.5 * static_cast<double>(p.depth_m));
+  GpuScene& scene = *context.frame.scene;
+  upload_instances(scene, about_map);
+  context.bind_framebuffer({}, "occlusion_map");
+  glViewport(0, 0, p.texels, p.texels);
+  glEnable(GL_DEPTH_TEST);
+  glDepthFunc(GL_GREATER);
+  glDepthMask(GL_TRUE);
+  glDisable(GL_CULL_FACE);  // a roof shelters whichever way its triangles face
+  const float nothing = 0.0f;
+  glClearBufferfv(GL_DEPTH, 0, &nothing);
+  const glm::mat4 clip = occlusion_clip(p, about_map.camera.position_m);
+  const Program& program = context.program("depth");
+  program.use();
+  program.set("clip_from_relative", clip);
+  draw_instances(scene, about_map, clip, DrawWhat::shelter);
+  glDisable(GL_DEPTH_TEST);
+  upload_instances(scene, context.frame);  // what the other passes draw is relative to the camera
+}
 
 void draw_map(PassContext& context, MapState& state) {
   const Frame& frame = context.frame;
@@ -31,24 +58,12 @@ void draw_map(PassContext& context, MapState& state) {
     const OcclusionPlacement placement = place_occlusion_map(
         frame.camera.position_m, fall, context.parameter("side_m"), texels, context.parameter("step_m"), low, high);
     const bool stale = context.fresh("occlusion_map") || !state.drawn || state.placement != placement ||
-                       state.geometry_version != frame.geometry_version;
+                       state.geometry_version != frame.geometry_version || state.scene != frame.scene;
     if (stale) {
-      context.bind_framebuffer({}, "occlusion_map");
-      glViewport(0, 0, texels, texels);
-      glEnable(GL_DEPTH_TEST);
-      glDepthFunc(GL_GREATER);
-      glDepthMask(GL_TRUE);
-      glDisable(GL_CULL_FACE);  // a roof shelters whichever way its triangles face
-      const float nothing = 0.0f;
-      glClearBufferfv(GL_DEPTH, 0, &nothing);
-      const glm::mat4 clip = occlusion_clip(placement, frame.camera.position_m);
-      const Program& program = context.program("depth");
-      program.use();
-      program.set("clip_from_relative", clip);
-      draw_instances(*frame.scene, frame, clip, DrawWhat::shelter);
-      glDisable(GL_DEPTH_TEST);
+      redraw(context, placement);
       state.placement = placement;
       state.geometry_version = frame.geometry_version;
+      state.scene = frame.scene;
       state.drawn = true;
     }
     const float texel_m = placement.side_m / static_cast<float>(texels);
