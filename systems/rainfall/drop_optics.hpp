@@ -37,4 +37,8 @@ std::vector<float> make_drop_phase();
 glm::dvec3 drop_radiance(const glm::dvec3& direction,
                          const std::function<glm::dvec3(const glm::dvec3& direction)>& surroundings);
 
+// The same in surroundings that depend on the elevation alone, as a cubic in the sine of the view's elevation
+// (least squares): a drop gathers from so wide a lobe that what it shows changes slowly.
+std::array<glm::vec3, 4> fit_drop_radiance(const std::function<glm::dvec3(const glm::dvec3& direction)>& surroundings);
+
 }  // namespace petrichor

@@ -1,9 +1,12 @@
 #include "systems/rainfall/passes.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <string>
+#include <string_view>
 
 #include "systems/rainfall/drop_optics.hpp"
 #include "systems/rainfall/layers.hpp"
@@ -11,23 +14,27 @@
 namespace petrichor {
 namespace {
 
-// The first of the struct that rain_cells and rain_splat call RainCommand.
+// RainCommand of the shaders.
 struct Command {
   std::uint32_t groups_x = RAIN_COMMAND_WIDTH, groups_y = 0, groups_z = 1, cell_count = 0, drops_drawn = 0;
+  std::uint32_t list_count[RAIN_LISTS] = {};
 };
 
 // What the three passes share between them and from frame to frame.
 struct RainGpu {
-  Buffer layers, cells, command, optical_depth, radiance, optics;
+  Buffer layers, cells, command, optical_depth, radiance, optics, streaks;
+  VertexArray no_vertices;
+  bool software = false, software_known = false;
   int width = 0, height = 0;
   std::uint32_t layer_count = 0, capacity = 0;
+  float least_radiance = 0.0f;
   std::uint64_t frame_number = std::numeric_limits<std::uint64_t>::max();
   FrameSky ambient_sky;
   bool ambient_known = false;
+  std::array<glm::vec3, 4> ambient{};
 };
 
 std::weak_ptr<RainGpu> newest;
-bool counting = false;
 
 bool rains(const Frame& frame) {
   return frame.rain && frame.rain->rain_mm_per_hour > 0.0f && frame.rain->drawn_distance_m > 0.0f;
@@ -48,27 +55,30 @@ glm::dvec3 sky_radiance(const FrameSky& sky, const glm::dvec3& direction) {  // 
 }
 
 void update_optics(RainGpu& gpu, const FrameSky& sky) {
-  static const std::vector<float> phase = make_drop_phase();
   static_assert(drop_phase_bins == RAIN_PHASE_BINS);
+  if (gpu.optics.bytes == 0) upload(gpu.optics, std::span<const float>(make_drop_phase()));
   const bool same = gpu.ambient_known && sky.zenith_cd_m2 == gpu.ambient_sky.zenith_cd_m2 &&
                     sky.horizon_cd_m2 == gpu.ambient_sky.horizon_cd_m2 && sky.glow_height == gpu.ambient_sky.glow_height;
   if (same) return;
-  std::vector<float> data(phase);
-  for (int i = 0; i < RAIN_AMBIENT_BINS; ++i) {
-    const double sine = 2.0 * i / (RAIN_AMBIENT_BINS - 1) - 1.0;
-    const glm::dvec3 direction(0.0, sine, -std::sqrt(std::max(0.0, 1.0 - sine * sine)));
-    const glm::dvec3 seen = drop_radiance(direction, [&](const glm::dvec3& d) { return sky_radiance(sky, d); });
-    data.insert(data.end(), {float(seen.r), float(seen.g), float(seen.b), 0.0f});
-  }
-  upload(gpu.optics, std::span<const float>(data));
+  gpu.ambient = fit_drop_radiance([&](const glm::dvec3& d) { return sky_radiance(sky, d); });
   gpu.ambient_sky = sky;
   gpu.ambient_known = true;
 }
 
 void bind(GLuint binding, const Buffer& buffer) { glBindBufferBase(GL_SHADER_STORAGE_BUFFER, binding, buffer.id); }
 
+bool is_software_gl() {
+  const char* name = reinterpret_cast<const char*>(glGetString(GL_RENDERER));
+  const std::string_view renderer = name ? name : "";
+  return renderer.find("llvmpipe") != renderer.npos || renderer.find("softpipe") != renderer.npos ||
+         renderer.find("SwiftShader") != renderer.npos;
+}
+
 void list_cells(RainGpu& gpu, PassContext& context) {
   const Frame& frame = context.frame;
+  if (!gpu.software_known) gpu.software = is_software_gl();
+  gpu.software_known = true;
+  gpu.least_radiance = context.parameter("least_radiance");
   const RainLayers view = view_layers(*frame.rain, frame.camera, context.width, context.height);
   gpu.layer_count = static_cast<std::uint32_t>(view.layers.size());
   gpu.frame_number = frame.number;
@@ -85,7 +95,7 @@ void list_cells(RainGpu& gpu, PassContext& context) {
   bind(RAIN_LAYERS_BINDING, gpu.layers);
   bind(RAIN_CELLS_BINDING, gpu.cells);
   bind(RAIN_COMMAND_BINDING, gpu.command);
-  const Program& program = context.program("cells");
+  const Program& program = context.program(gpu.software ? "cells_software" : "cells");
   program.use();
   program.set("layer_count", unsigned(gpu.layer_count));
   program.set("seed", unsigned(frame.rain->seed));
@@ -93,10 +103,72 @@ void list_cells(RainGpu& gpu, PassContext& context) {
   program.set("capacity", unsigned(gpu.capacity));
   program.set("distances", distances(frame));
   program.set("camera_moves", int(frame.uniforms.view_projection != frame.uniforms.shutter_view_projection));
-  program.set("least_radiance", context.parameter("least_radiance"));
+  program.set("least_radiance", gpu.least_radiance);
   const std::uint64_t groups = (view.candidates + 63) / 64;
   const std::uint64_t wide = std::min<std::uint64_t>(groups, 16384);
   glDispatchCompute(static_cast<GLuint>(wide), static_cast<GLuint>((groups + wide - 1) / wide), 1);
+}
+
+std::string variant(std::string_view name, bool scene, bool lamps) {
+  return std::string(name) + (scene ? "_scene" : "") + (lamps ? "_lamps" : "");
+}
+
+// Uniforms and bindings that drawing drops needs, whichever way.
+void prepare(const RainGpu& gpu, PassContext& context, const Program& program) {
+  program.use();
+  program.set("layer_count", unsigned(gpu.layer_count));
+  program.set("seed", unsigned(context.frame.rain->seed));
+  program.set("capacity", unsigned(gpu.capacity));
+  program.set("distances", distances(context.frame));
+  program.set("least_radiance", gpu.least_radiance);
+  program.set("use_occlusion", int(context.has("occlusion_map")));
+}
+
+void draw_on_gpu(RainGpu& gpu, PassContext& context, bool scene, bool lamps) {
+  prepare(gpu, context, context.program(variant("splat", scene, lamps)));
+  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT);
+  glBindBuffer(GL_DISPATCH_INDIRECT_BUFFER, gpu.command.id);
+  glDispatchComputeIndirect(0);
+  glBindBuffer(GL_DISPATCH_INDIRECT_BUFFER, 0);
+}
+
+// On a CPU reading counts back costs nothing, and exact sizes save empty dispatches.
+void draw_in_software(RainGpu& gpu, PassContext& context, bool scene, bool lamps) {
+  if (gpu.streaks.bytes == 0) {
+    gpu.streaks = make_buffer(std::size_t(RAIN_STREAK_CAPACITY) * RAIN_LISTS * sizeof(RainStreakGpu));
+  }
+  bind(RAIN_STREAKS_BINDING, gpu.streaks);
+  glMemoryBarrier(GL_ALL_BARRIER_BITS);
+  Command command;
+  read_buffer(gpu.command, &command, sizeof command);
+  const std::uint32_t cells = std::min(command.cell_count, gpu.capacity);
+  // As many cells at a time as surely fit a list: even if all their drops came into one, it would take a mean that is
+  // seventeen deviations too high.
+  constexpr std::uint32_t slice = RAIN_STREAK_CAPACITY / 29;
+  for (std::uint32_t first = 0; first < cells; first += slice) {
+    const Program& drops = context.program(variant("drops", scene, lamps));
+    prepare(gpu, context, drops);
+    drops.set("first_cell", unsigned(first));
+    drops.set("end_cell", unsigned(std::min(cells, first + slice)));
+    drops.dispatch(static_cast<int>(std::min(cells - first, slice)));
+    glMemoryBarrier(GL_ALL_BARRIER_BITS);
+    read_buffer(gpu.command, &command, sizeof command);
+    for (unsigned list = 0; list < RAIN_LISTS; ++list) {
+      if (command.list_count[list] == 0) continue;
+      const bool capsules = list == RAIN_LISTS - 1;
+      const Program& lines = context.program(variant(capsules ? "capsules" : "lines", scene, lamps));
+      lines.use();
+      lines.set("list", list);
+      lines.set("list_size", unsigned(std::min<std::uint32_t>(command.list_count[list], RAIN_STREAK_CAPACITY)));
+      lines.set("taps", list < RAIN_LENGTHS ? 1 : 2);
+      lines.dispatch(static_cast<int>(command.list_count[list]));
+    }
+    glMemoryBarrier(GL_ALL_BARRIER_BITS);
+    Command next;
+    next.cell_count = command.cell_count;
+    next.drops_drawn = command.drops_drawn;
+    upload(gpu.command, &next, sizeof next);
+  }
 }
 
 void splat(RainGpu& gpu, PassContext& context) {
@@ -105,7 +177,7 @@ void splat(RainGpu& gpu, PassContext& context) {
     gpu.width = context.width;
     gpu.height = context.height;
     const std::size_t pixels = std::size_t(context.width) * context.height;
-    gpu.optical_depth = make_buffer(pixels * 4);
+    gpu.optical_depth = make_buffer(std::size_t(context.width) * ((context.height + 1) / 2) * 4);
     gpu.radiance = make_buffer(pixels * 16);
     clear_buffer(gpu.optical_depth);
     clear_buffer(gpu.radiance);
@@ -118,20 +190,11 @@ void splat(RainGpu& gpu, PassContext& context) {
   bind(RAIN_OPTICAL_DEPTH_BINDING, gpu.optical_depth);
   bind(RAIN_RADIANCE_BINDING, gpu.radiance);
   bind(RAIN_OPTICS_BINDING, gpu.optics);
-  const Program& program = context.program(counting ? "splat_counting" : "splat");
-  program.use();
-  program.set("layer_count", unsigned(gpu.layer_count));
-  program.set("seed", unsigned(frame.rain->seed));
-  program.set("capacity", unsigned(gpu.capacity));
-  program.set("distances", distances(frame));
-  program.set("use_depth", int(context.has("depth")));
-  program.set("use_occlusion", int(context.has("occlusion_map")));
-  if (context.has("depth")) context.bind_texture(0, "depth");
-  if (context.has("occlusion_map")) context.bind_texture(OCCLUSION_UNIT, "occlusion_map");
-  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT);
-  glBindBuffer(GL_DISPATCH_INDIRECT_BUFFER, gpu.command.id);
-  glDispatchComputeIndirect(0);
-  glBindBuffer(GL_DISPATCH_INDIRECT_BUFFER, 0);
+  const bool scene = context.has("depth"), lamps = lamps_on_rain(frame);
+  if (scene) context.bind_texture(0, "depth");
+  if (scene && context.has("occlusion_map")) context.bind_texture(OCCLUSION_UNIT, "occlusion_map");
+  if (gpu.software) draw_in_software(gpu, context, scene, lamps);
+  else draw_on_gpu(gpu, context, scene, lamps);
 }
 
 void composite(RainGpu& gpu, PassContext& context) {
@@ -140,21 +203,42 @@ void composite(RainGpu& gpu, PassContext& context) {
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
   bind(RAIN_OPTICAL_DEPTH_BINDING, gpu.optical_depth);
   bind(RAIN_RADIANCE_BINDING, gpu.radiance);
-  bind(RAIN_OPTICS_BINDING, gpu.optics);
-  const bool environment = context.has("environment");
-  const Program& program = context.program(environment ? "composite_environment" : "composite");
+  const bool lamps = lamps_on_rain(frame);
+  std::string name = gpu.software ? "raster" : "composite";
+  if (context.has("environment")) name += "_environment";
+  if (gpu.software && lamps) name += "_lamps";
+  const Program& program = context.program(name);
   program.use();
-  if (environment) context.bind_texture(7, "environment");
+  if (context.has("environment")) context.bind_texture(7, "environment");
   program.set("near_extinction", frame.rain->drawn_extinction_per_m * distances(frame).x);
-  program.set("lamps", int(lamps_on_rain(frame)));
+  for (int i = 0; i < 4; ++i) program.set("ambient[" + std::to_string(i) + "]", gpu.ambient[i]);
+  program.set("lamps", int(lamps));
   // The ray through a pixel, one metre deep along the axis.
   const float tall = frame.uniforms.lens.x, wide = tall * frame.uniforms.lens.y;
   const glm::mat3 to_world = glm::transpose(glm::mat3(frame.uniforms.view));
   program.set("ray_corner", to_world * glm::vec3(-wide, -tall, -1.0f));
   program.set("ray_x", to_world * glm::vec3(2.0f * wide / static_cast<float>(context.width), 0.0f, 0.0f));
   program.set("ray_y", to_world * glm::vec3(0.0f, 2.0f * tall / static_cast<float>(context.height), 0.0f));
-  context.bind_image(0, "colour", GL_READ_WRITE);
-  program.dispatch(context.width, context.height);
+  if (!gpu.software) {
+    context.bind_image(0, "colour", GL_READ_WRITE);
+    program.dispatch(context.width, (context.height + 1) / 2);
+    return;
+  }
+  if (!gpu.no_vertices) {
+    GLuint id = 0;
+    glCreateVertexArrays(1, &id);
+    gpu.no_vertices = VertexArray(id);
+  }
+  static constexpr std::array<std::string_view, 1> colours{"colour"};
+  context.bind_framebuffer(colours, "");
+  glBindVertexArray(gpu.no_vertices);
+  glEnable(GL_BLEND);
+  glBlendFuncSeparate(GL_ONE, GL_SRC_ALPHA, GL_ZERO, GL_ONE);
+  glDrawArrays(GL_TRIANGLES, 0, 3);
+  glDisable(GL_BLEND);
+  glBindVertexArray(0);
+  clear_buffer(gpu.optical_depth);
+  if (lamps) clear_buffer(gpu.radiance);
 }
 
 }  // namespace
@@ -162,32 +246,49 @@ void composite(RainGpu& gpu, PassContext& context) {
 std::vector<PassOffer> rainfall_passes() {
   auto gpu = std::make_shared<RainGpu>();
   newest = gpu;
-  const std::vector<std::string> splat_file{"systems/rainfall/rain_splat.comp.glsl"};
   const std::vector<std::string> composite_file{"systems/rainfall/rain_composite.comp.glsl"};
   std::vector<PassOffer> offers(3);
   offers[0].name = "rain_cells";
   offers[0].meaning = "cells of the drop field that the view can see, with the lamps that light them";
   offers[0].parameters = {{"least_radiance", 0.004}};
-  offers[0].shaders = {{"cells", {{"systems/rainfall/rain_cells.comp.glsl"}, {}}}};
+  offers[0].shaders = {{"cells", {{"systems/rainfall/rain_cells.comp.glsl"}, {}}},
+                       {"cells_software", {{"systems/rainfall/rain_cells.comp.glsl"}, {"SOFTWARE"}}}};
   offers[0].wanted = rains;
   offers[0].execute = [gpu](PassContext& context) { list_cells(*gpu, context); };
   offers[1].name = "rain_splat";
   offers[1].meaning = "falling drops as streaks, into sums of optical depth and radiance";
   offers[1].slots = {{"depth", SlotAccess::read, true}, {"occlusion_map", SlotAccess::read, true}};
-  offers[1].shaders = {{"splat", {splat_file, {"SMOOTH_LINES"}}},
-                       {"splat_counting", {splat_file, {"SMOOTH_LINES", "COUNT_DROPS"}}}};
+  for (const bool scene : {false, true}) {
+    for (const bool lamps : {false, true}) {
+      std::vector<std::string> defines;
+      if (scene) defines.push_back("SCENE");
+      if (lamps) defines.push_back("LAMPS");
+      const auto add = [&](std::string_view name, std::string_view file) {
+        offers[1].shaders[variant(name, scene, lamps)] = {{std::string(file)}, defines};
+      };
+      add("splat", "systems/rainfall/rain_splat.comp.glsl");
+      add("drops", "systems/rainfall/rain_drops.comp.glsl");
+      add("lines", "systems/rainfall/rain_lines.comp.glsl");
+      defines.push_back("CAPSULES");
+      add("capsules", "systems/rainfall/rain_lines.comp.glsl");
+    }
+  }
   offers[1].wanted = rains;
   offers[1].execute = [gpu](PassContext& context) { splat(*gpu, context); };
   offers[2].name = "rain_composite";
   offers[2].meaning = "lays the drops over the picture";
   offers[2].slots = {{"colour", SlotAccess::modify}, {"environment", SlotAccess::read, true}};
   offers[2].shaders = {{"composite", {composite_file, {}}}, {"composite_environment", {composite_file, {"ENVIRONMENT"}}}};
+  const std::vector<std::string> raster_files{"systems/rainfall/rain_composite.vert.glsl",
+                                              "systems/rainfall/rain_composite.frag.glsl"};
+  offers[2].shaders["raster"] = {raster_files, {}};
+  offers[2].shaders["raster_lamps"] = {raster_files, {"LAMPS"}};
+  offers[2].shaders["raster_environment"] = {raster_files, {"ENVIRONMENT"}};
+  offers[2].shaders["raster_environment_lamps"] = {raster_files, {"ENVIRONMENT", "LAMPS"}};
   offers[2].wanted = rains;
   offers[2].execute = [gpu](PassContext& context) { composite(*gpu, context); };
   return offers;
 }
-
-void count_rain_drops(bool on) { counting = on; }
 
 RainStats rain_stats(const Frame& frame) {
   const auto gpu = newest.lock();

@@ -17,9 +17,7 @@ struct RainStats {
   std::uint32_t drops_drawn = 0;  // in view, nearer than the scene at their middle (or long enough to tell otherwise), not sheltered
   std::uint32_t cells = 0;
 };
-// Counting costs a little, so it is off until asked for; then rain_stats() of the frame just executed waits for
-// the GPU. All 0 where that frame ran no rain pass.
-void count_rain_drops(bool);
+// Of the frame just executed; waits for the GPU. All 0 where that frame ran no rain pass.
 RainStats rain_stats(const Frame&);
 
 }  // namespace petrichor

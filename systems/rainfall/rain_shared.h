@@ -16,17 +16,21 @@ using glm::vec4;
 #define RAIN_OPTICAL_DEPTH_BINDING 5
 #define RAIN_RADIANCE_BINDING 6
 #define RAIN_OPTICS_BINDING 7
+#define RAIN_STREAKS_BINDING 8
 
 #define RAIN_LANES 32            // invocations that share a cell
 #define RAIN_SPLAT_GROUP 64
 #define RAIN_COMMAND_WIDTH 256   // work groups along x of the indirect dispatch
 #define RAIN_CELL_LIGHTS 8
+#define RAIN_LENGTHS 7            // lists of streaks by length, a factor of two each (software OpenGL)
+#define RAIN_LISTS 15
+#define RAIN_STREAK_CAPACITY 262144
 #define RAIN_PHASE_BINS 256
-#define RAIN_AMBIENT_BINS 64
 
-// Sums in 32-bit fixed point. Optical depth: 1 is 2^16, so a pixel holds 65,536 opaque e-folds. Radiance times
-// optical depth, in output units (1 is white): 1 is 2^14, so a pixel holds 262,144 times white.
-#define RAIN_DEPTH_ONE 65536.0
+// Sums in fixed point. Optical depth: 16 bits a pixel, two rows in a word; 1 is 2^12, so a pixel holds 16 e-folds: a
+// drop adds at most 3.9, all the rain of a downpour to 100 m adds 0.5. Radiance times optical depth: 32 bits, in
+// output units (1 is white); 1 is 2^14, so a pixel holds 262,144 times white.
+#define RAIN_DEPTH_ONE 4096.0
 #define RAIN_RADIANCE_ONE 16384.0
 #define RAIN_RADIANCE_MOST 2048.0  // a single drop is clamped here
 
@@ -44,6 +48,13 @@ struct RainCellGpu {
   vec4 corner_edge;
   uvec4 key;     // of its drops; w: count << 16 | number of lights << 12 | layer
   uvec4 lights;  // RAIN_CELL_LIGHTS indices of 16 bits
+};
+
+// A streak that waits to be drawn (software OpenGL).
+struct RainStreakGpu {
+  vec4 from_to;      // pixels
+  vec4 depths_area;  // z: area, w: radius, pixels
+  vec4 light;        // output radiance from lamps
 };
 
 #ifdef __cplusplus

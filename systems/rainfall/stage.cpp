@@ -1,6 +1,8 @@
 #include "systems/rainfall/stage.hpp"
 
+#include <array>
 #include <nlohmann/json.hpp>
+#include <string_view>
 
 #include "systems/rainfall/drop_optics.hpp"
 #include "systems/rainfall/passes.hpp"
@@ -15,6 +17,10 @@ PassOffer backdrop_offer(const StageSet& set) {
   offer.slots = {{"colour", SlotAccess::write}, {"depth", SlotAccess::write, true}};
   offer.shaders = {{"backdrop", {{"systems/rainfall/stage_backdrop.comp.glsl"}, {}}}};
   offer.execute = [set](PassContext& context) {
+    if (set.wall_distance_m == 0.0f) {  // darkness
+      glClearTexImage(context.texture("colour").id, 0, GL_RGBA, GL_FLOAT, nullptr);
+      return;
+    }
     const Program& program = context.program("backdrop");
     program.use();
     program.set("wall", set.wall_cd_m2);
@@ -35,13 +41,21 @@ PassOffer present_offer() {
   offer.name = "stage_present";
   offer.meaning = "linear light to 8 bits";
   offer.slots = {{"colour", SlotAccess::read}, {"picture", SlotAccess::write}};
-  offer.shaders = {{"present", {{"systems/rainfall/stage_present.comp.glsl"}, {}}}};
-  offer.execute = [](PassContext& context) {
-    const Program& program = context.program("present");
-    program.use();
+  offer.shaders = {{"present", {{"systems/rainfall/rain_composite.vert.glsl", "systems/rainfall/stage_present.frag.glsl"}, {}}}};
+  const auto vertices = std::make_shared<VertexArray>();
+  offer.execute = [vertices](PassContext& context) {
+    if (!*vertices) {
+      GLuint id = 0;
+      glCreateVertexArrays(1, &id);
+      *vertices = VertexArray(id);
+    }
+    static constexpr std::array<std::string_view, 1> pictures{"picture"};
+    context.bind_framebuffer(pictures, "");
+    context.program("present").use();
     context.bind_texture(0, "colour");
-    context.bind_image(0, "picture", GL_WRITE_ONLY);
-    program.dispatch(context.width, context.height);
+    glBindVertexArray(*vertices);
+    glDrawArrays(GL_TRIANGLES, 0, 3);
+    glBindVertexArray(0);
   };
   return offer;
 }

@@ -1,0 +1,48 @@
+#version 450 core
+// Software OpenGL runs both sides of every branch, so there the drops are first sorted by the work they make: one
+// invocation goes through a cell; points are drawn at once, streaks are listed by length for rain_lines.
+layout(local_size_x = 32) in;
+#include "systems/rainfall/streak.glsl"
+#include "systems/rainfall/raster.glsl"
+#include "systems/rainfall/cell_lights.glsl"
+#include "systems/rainfall/streak_lists.glsl"
+
+layout(std430, binding = RAIN_CELLS_BINDING) readonly buffer RainCells { RainCellGpu cells[]; };
+uniform uint first_cell, end_cell;
+
+void main() {
+  uint index = first_cell + gl_GlobalInvocationID.x;
+  if (index >= end_cell) return;
+  vec4 corner_edge = cells[index].corner_edge;
+  uvec4 cell = cells[index].key;
+  RainLayerGpu layer = layers[cell.w];
+  uvec3 key;
+  uint count = drops_of_cell(layer, cell.xyz, key);
+#ifdef LAMPS
+  vec3 swept = -layer.velocity_diameter.xyz * frame.camera_velocity_mps.w;
+  uvec4 cell_lights;
+  int light_count = lights_of_cell(corner_edge.xyz + 0.5 * corner_edge.w + 0.5 * swept,
+                                   0.5 * length(corner_edge.w + abs(swept)), cell_lights);
+#endif
+  uint drawn = 0u;
+  for (uint m = 0u; m < count; ++m) {
+    uint bits;
+    vec4 place = drop_of_cell(key, m, bits);
+    vec3 closed = corner_edge.xyz + corner_edge.w * place.xyz;
+    Streak s;
+    if (!project(closed, place.w, layer.velocity_diameter.xyz, layer.velocity_diameter.w, s) || hidden(s)) continue;
+    drawn += 1u;
+    dither_state = bits;
+#ifdef LAMPS
+    drop_light = lamp_light(cell_lights, light_count, s.middle);
+#endif
+    vec2 span = abs(s.to - s.from);
+    float reach = max(span.x, span.y);
+    if (s.radius < 0.5 && reach < 1.0) {
+      draw_point(s.from, s.to, s.depths, s.area);
+    } else {
+      list_streak(s, reach, drop_light, s.area > smooth_coverage * reach);
+    }
+  }
+  if (drawn > 0u) atomicAdd(drops_drawn, drawn);
+}
