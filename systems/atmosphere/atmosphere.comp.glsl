@@ -11,7 +11,8 @@ layout(binding = 1) uniform sampler2D airlight;
 layout(binding = 0, rgba16f) uniform image2D colour;
 uniform vec2 airlight_size;
 uniform float airlight_scale;
-uniform float mist_height_m;  // of the layer that a ray to the sky passes through
+uniform float mist_height_m;    // of the layer that a ray to the sky passes through
+uniform float street_height_m;  // above the camera: so far up the mist is lit by the street, higher by the sky's glow
 uniform float reach_m;
 
 // The four nearest airlight pixels, those at the same distance foremost: halos do not leak across edges.
@@ -46,12 +47,16 @@ void main() {
   float passes = exp(-thickness);
 
   vec3 surface = depth > 0.0 ? imageLoad(colour, texel).rgb : sky_radiance(ray);
+  vec3 result = surface * passes;
+  vec3 glow = frame.sky_horizon.rgb * (0.5 * frame.sky_zenith.w);
 #ifdef ENVIRONMENT
-  vec3 ambient = environment_mean() * frame.sky_zenith.w;
+  float in_street = min(street_height_m / max(ray.y, 1e-3), distance_m);
+  float street_passes = exp(-thickness * in_street / distance_m);
+  result += (environment_mean() * frame.sky_zenith.w * (1.0 - street_passes) + glow * (street_passes - passes)) *
+            frame.mist.yzw;
 #else
-  vec3 ambient = frame.sky_horizon.rgb * (0.5 * frame.sky_zenith.w);
+  result += glow * (1.0 - passes) * frame.mist.yzw;
 #endif
-  vec3 result = surface * passes + ambient * frame.mist.yzw * (1.0 - passes);
 #ifdef AIRLIGHT
   result += enlarged_airlight(vec2(texel) + 0.5, min(depth > 0.0 ? distance_m : reach_m, reach_m));
 #endif

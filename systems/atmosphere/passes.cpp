@@ -12,6 +12,7 @@ namespace {
 constexpr int list_tile = 8;         // airlight pixels per side of a list's tile
 constexpr float sky_reach_m = 400.0f;  // rays that meet nothing gather light so far
 constexpr float mist_height_m = 80.0f;
+constexpr float street_height_m = 12.0f;
 
 struct AirlightState {
   Texture lists;
@@ -97,6 +98,7 @@ PassOffer atmosphere() {
             }
             if (environment) context.bind_texture(7, "environment");
             program.set("mist_height_m", mist_height_m);
+            program.set("street_height_m", street_height_m);
             program.set("reach_m", sky_reach_m);
             context.bind_image(0, "colour", GL_READ_WRITE);
             program.dispatch(context.width, context.height);
