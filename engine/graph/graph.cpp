@@ -18,6 +18,7 @@ namespace petrichor {
 namespace {
 
 Texture make_texture(const TextureKey& key) {
+  if (key.format == GL_NONE) return {};
   return key.layers ? make_texture_2d_array(key.width, key.height, key.layers, key.format, key.levels)
                     : make_texture_2d(key.width, key.height, key.format, key.levels);
 }

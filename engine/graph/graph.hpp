@@ -85,7 +85,8 @@ struct PassReport {
 //     linear_output = "light",                                   -- optional: scene-linear light, for EXR
 //   }
 //
-// A resource: format (engine/gpu/formats.cpp lists them), and
+// A resource: format (engine/gpu/formats.cpp lists them; "none": no texture, it stands for buffers that passes share
+// among themselves, so that these too are ordered and culled), and
 //   scale = 1.0               of the output size, rounded up; or width and height in pixels
 //   mips = 1                  levels; 0: down to one pixel
 //   layers = n                a 2D array

@@ -14,8 +14,8 @@ namespace petrichor {
 
 struct TextureKey {
   int width = 0, height = 0, levels = 1;
-  int layers = 0;  // 0: 2D
-  GLenum format = 0;
+  int layers = 0;     // 0: 2D
+  GLenum format = 0;  // GL_NONE: no texture at all, only the order of passes
   friend bool operator==(const TextureKey&, const TextureKey&) = default;
 };
 

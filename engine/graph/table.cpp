@@ -16,6 +16,7 @@ namespace {
 using nlohmann::json;
 
 constexpr int kMaxPixels = 16384;  // OpenGL 4.5's least GL_MAX_TEXTURE_SIZE
+constexpr FormatInfo kNoTexture{"none", GL_NONE, 0, false, false, false};
 constexpr std::string_view kPrevious = "previous:";
 // Keys of a pass that are no slots; "1" is how {"gbuffer", depth = "depth"} arrives from Lua.
 constexpr std::string_view kPassKeys[] = {"pass", "1", "id", "parameters", "enabled"};
@@ -43,10 +44,11 @@ Result<ResourceDesc> read_resource(const Place& at, const std::string& name, con
     if (key == "format") {
       std::string format;
       PETRICHOR_TAKE(format, read_text(here, v));
-      desc.format = find_format(format);
+      desc.format = format == kNoTexture.name ? &kNoTexture : find_format(format);
       if (!desc.format) {
         std::vector<std::string_view> known;
         for (const FormatInfo& info : known_formats()) known.push_back(info.name);
+        known.push_back(kNoTexture.name);
         return unknown(here, "format", format, std::move(known));
       }
     } else if (key == "scale") {
@@ -81,6 +83,9 @@ Result<ResourceDesc> read_resource(const Place& at, const std::string& name, con
   if (!desc.format) return at.error("format is missing, as in format = \"rgba16f\"");
   if ((desc.width == 0) != (desc.height == 0)) return at.error("width and height go together");
   if (has_scale && desc.width) return at.error("has both scale and width/height; give one");
+  if (desc.format == &kNoTexture && (desc.history || desc.persistent || desc.clear)) {
+    return at.error("has no texture (format \"none\"), so history, persistent and clear mean nothing");
+  }
   if (desc.history && desc.persistent) return at.error("is both history and persistent; give one");
   return desc;
 }
@@ -276,6 +281,9 @@ class TableReader {
         Connection connection;
         PETRICHOR_TAKE(connection, connect(group_place / uniform, v, slot));
         const ResourceDesc& desc = table_.resources[connection.resource];
+        if (desc.format == &kNoTexture) {
+          return (group_place / uniform).error(fmt::format("\"{}\" has no texture", desc.name));
+        }
         if (writes(access) && !desc.format->image) {
           return (group_place / uniform)
               .error(fmt::format("\"{}\" is {}, which no compute shader can write", desc.name, desc.format->name));

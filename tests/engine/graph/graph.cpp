@@ -145,6 +145,51 @@ TEST_F(GraphTest, ClearedResourcesHaveContentWithoutAWriter) {
   EXPECT_EQ(run(), 12.0f);
 }
 
+// Passes that meet in a buffer of their own say so with a resource without a texture.
+TEST_F(GraphTest, ResourcesWithoutATextureOrderAndCull) {
+  using enum SlotAccess;
+  std::vector<std::string> order;
+  std::vector<PassOffer> offers;
+  offers.push_back({.name = "cells",
+                    .slots = {{"cells", write}},
+                    .wanted = [](const Frame& f) { return f.rain; },
+                    .execute =
+                        [&](PassContext& p) {
+                          order.push_back("cells");
+                          EXPECT_TRUE(p.has("cells"));
+                          EXPECT_EQ(GLuint(p.texture("cells").id), 0u);
+                        }});
+  offers.push_back({.name = "splat", .slots = {{"cells", read}, {"drops", write}}, .execute = [&](PassContext&) {
+                      order.push_back("splat");
+                    }});
+  offers.push_back({.name = "composite", .slots = {{"drops", read}, {"colour", modify}}, .execute = [&](PassContext&) {
+                      order.push_back("composite");
+                    }});
+  offers.push_back({.name = "light", .slots = {{"colour", write}}, .execute = [&](PassContext& p) {
+                      order.push_back("light");
+                      test::fill(p.texture("colour"), 1);
+                    }});
+  Graph other(shaders, std::move(offers));
+  json table = {
+      {"resources", {{"cells", {{"format", "none"}}}, {"drops", {{"format", "none"}}}, {"colour", rgba16f()}}},
+      {"passes",
+       {pass("light", {{"colour", "colour"}}), pass("cells", {{"cells", "cells"}}),
+        pass("splat", {{"cells", "cells"}, {"drops", "drops"}}),
+        pass("composite", {{"drops", "drops"}, {"colour", "colour"}})}},
+      {"output", "colour"}};
+  ASSERT_TRUE(other.load_table(table, "x"));
+  ASSERT_TRUE(other.execute({}, 8, 4, timer));
+  EXPECT_EQ(order, (Order{"light", "cells", "splat", "composite"}));
+  order.clear();
+  ASSERT_TRUE(other.execute({.rain = false}, 8, 4, timer));
+  EXPECT_EQ(order, Order{"light"});
+  table["passes"][3]["enabled"] = false;  // nobody lays the drops over the picture
+  ASSERT_TRUE(other.load_table(table, "x"));
+  order.clear();
+  ASSERT_TRUE(other.execute({}, 8, 4, timer));
+  EXPECT_EQ(order, Order{"light"});
+}
+
 TEST_F(GraphTest, APassMayReadAndWriteOneName) {
   load({{"resources", {{"a", rgba16f()}}},
         {"passes",

@@ -86,6 +86,7 @@ TEST_F(TableTest, WrongResources) {
   holds(resource(R"({"format": "r8", "history": true, "persistent": true})"), "both history and persistent");
   holds(resource(R"({"format": "r8", "clear": [1, 2, 3, 4, 5]})"), "clear: expected 1 to 4 numbers, got 5");
   holds(resource(R"({"format": "r8", "clear": "red"})"), "clear: expected a number or a list");
+  holds(resource(R"({"format": "none", "persistent": true})"), "has no texture");
   holds(resource(R"({"format": "r8", "mip": 1})"), "unknown key \"mip\"; did you mean \"mips\"?");
   holds(error(R"({"resources": {"previous:x": {"format": "r8"}}, "passes": [], "output": "x"})"), "holds no \":\"");
 }
