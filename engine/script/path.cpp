@@ -17,10 +17,14 @@ std::optional<Easing> easing_named(std::string_view name) {
 double ease(Easing easing, double progress) {
   const double p = std::clamp(progress, 0.0, 1.0);
   switch (easing) {
-    case Easing::linear: return p;
-    case Easing::smooth: return p * p * (3.0 - 2.0 * p);
-    case Easing::in: return p * p;
-    case Easing::out: return 1.0 - (1.0 - p) * (1.0 - p);
+    case Easing::linear:
+      return p;
+    case Easing::smooth:
+      return p * p * (3.0 - 2.0 * p);
+    case Easing::in:
+      return p * p;
+    case Easing::out:
+      return 1.0 - (1.0 - p) * (1.0 - p);
   }
   return p;
 }
@@ -29,7 +33,8 @@ glm::dvec3 Spline::at(double time_s) const {
   assert(!times_s.empty() && times_s.size() == points.size());
   if (time_s <= times_s.front()) return points.front();
   if (time_s >= times_s.back()) return points.back();
-  const auto i = static_cast<std::size_t>(std::upper_bound(times_s.begin(), times_s.end(), time_s) - times_s.begin()) - 1;
+  const auto i =
+      static_cast<std::size_t>(std::upper_bound(times_s.begin(), times_s.end(), time_s) - times_s.begin()) - 1;
   const auto slope = [&](std::size_t k) { return (points[k + 1] - points[k]) / (times_s[k + 1] - times_s[k]); };
   // The velocity at a knot: the parabola through it and its neighbours; at the ends the chord.
   const auto velocity = [&](std::size_t k) {
@@ -43,8 +48,8 @@ glm::dvec3 Spline::at(double time_s) const {
   const double u = (time_s - times_s[i]) / span;
   const double v = 1.0 - u;
   // Cubic Hermite basis.
-  return points[i] * (v * v * (1.0 + 2.0 * u)) + velocity(i) * (span * u * v * v) + points[i + 1] * (u * u * (3.0 - 2.0 * u)) -
-         velocity(i + 1) * (span * u * u * v);
+  return points[i] * (v * v * (1.0 + 2.0 * u)) + velocity(i) * (span * u * v * v) +
+         points[i + 1] * (u * u * (3.0 - 2.0 * u)) - velocity(i + 1) * (span * u * u * v);
 }
 
 glm::dquat look_along(const glm::dvec3& direction) {

@@ -22,12 +22,17 @@ constexpr std::array sections{
     Section{"", "Anywhere", ""},
     Section{"world", "world", ""},
     Section{"entity", "Entities",
-            "`rain.emitter` is a component of the entity `rain`, `rain.emitter.rain_mm_per_hour` one of its fields; both are read and "
-            "written like tables. `rain.fog = {extinction_per_km=4}` adds a component or sets fields of the one that is there, "
-            "`rain.fog = nil` takes it away, `pairs(rain.emitter)` walks the fields. A component that is one text stands for the text: "
-            "`rain.name`. Vectors and colours are `{1, 2, 3}`, `{x=1, y=2, z=3}` or `{r=1, g=0, b=0}`; rotations are quaternions "
+            "`rain.emitter` is a component of the entity `rain`, `rain.emitter.rain_mm_per_hour` one of its fields; "
+            "both are read and "
+            "written like tables. `rain.fog = {extinction_per_km=4}` adds a component or sets fields of the one that "
+            "is there, "
+            "`rain.fog = nil` takes it away, `pairs(rain.emitter)` walks the fields. A component that is one text "
+            "stands for the text: "
+            "`rain.name`. Vectors and colours are `{1, 2, 3}`, `{x=1, y=2, z=3}` or `{r=1, g=0, b=0}`; rotations are "
+            "quaternions "
             "`{x, y, z, w}`. Every value is checked against the field's type and range."},
-    Section{"model", "Models", "What `world.model` gives: a list of entities (`#model`, `model[1]`, `ipairs(model)`), parents first."},
+    Section{"model", "Models",
+            "What `world.model` gives: a list of entities (`#model`, `model[1]`, `ipairs(model)`), parents first."},
     Section{"handler", "Handlers", "What `on` gives."},
     Section{"camera", "camera", ""},
 };
@@ -67,7 +72,7 @@ std::string script_reference() {
     page += fmt::format("## {}\n\n", section.title);
     if (!section.text.empty()) page += fmt::format("{}\n\n", section.text);
     page += "| function | meaning |\n|---|---|\n";
-    for (const auto list : {script::timeline_bindings(), script::world_bindings()}) {
+    for (const auto list : script::all_bindings()) {
       for (const Binding& binding : list) {
         if (binding.owner == section.owner) page += fmt::format("| `{}` | {} |\n", binding.signature, binding.meaning);
       }
@@ -79,11 +84,15 @@ std::string script_reference() {
   const ScriptLimits limits;
   page += fmt::format(
       "## Lua's library\n\n"
-      "Scripts have these functions of Lua's library and no others: nothing that loads code, reads files or asks the clock. "
+      "Scripts have these functions of Lua's library and no others: nothing that loads code, reads files or asks the "
+      "clock. "
       "`require(\"scenes.city\")` runs `scripts/scenes/city.lua` once and gives what it returns. `pairs` and `next` go "
-      "through numbers, strings, booleans and entities in that order and each kind sorted, so every run is the same; `math.random` "
-      "counts from the run's seed (`--seed`). There are no finalisers (`__gc`). A script may use {} MiB of memory, {} million "
-      "instructions to load and {} million in one step of the simulation; beyond that it is stopped, which it cannot catch.\n\n",
+      "through numbers, strings, booleans and entities in that order and each kind sorted, so every run is the same; "
+      "`math.random` "
+      "counts from the run's seed (`--seed`). There are no finalisers (`__gc`). A script may use {} MiB of memory, {} "
+      "million "
+      "instructions to load and {} million in one step of the simulation; beyond that it is stopped, which it cannot "
+      "catch.\n\n",
       limits.memory_bytes >> 20, limits.load_instructions / 1'000'000, limits.step_instructions / 1'000'000);
   page += "| library | functions |\n|---|---|\n";
   for (const auto& library : script::library_names()) {

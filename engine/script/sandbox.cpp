@@ -138,7 +138,8 @@ Result<void> Sandbox::load(lua_State* to, const std::filesystem::path& file) {
   const std::string name = file.generic_string();
   std::error_code code;
   if (!std::filesystem::exists(file, code)) return failure(fmt::format("{}: no such script", name));
-  if (!std::filesystem::is_regular_file(file, code)) return failure(fmt::format("{}: not a script but a folder or device", name));
+  if (!std::filesystem::is_regular_file(file, code))
+    return failure(fmt::format("{}: not a script but a folder or device", name));
   const auto size = std::filesystem::file_size(file, code);
   if (code || size > largest_file_bytes) {
     return failure(fmt::format("{}: a script may have at most {} MiB", name, largest_file_bytes >> 20));
@@ -173,8 +174,8 @@ std::string Sandbox::failure_text(lua_State* thread, int status) {
   const SpareMemory spare(*this);
   auto told = protect([&](lua_State* s) {
     if (status == LUA_ERRMEM) {
-      text = position(thread) +
-             fmt::format("the script needs more than its {} MiB of memory", limits.memory_bytes >> 20);
+      text =
+          position(thread) + fmt::format("the script needs more than its {} MiB of memory", limits.memory_bytes >> 20);
     } else {
       lua_xmove(thread, s, 1);
       // A table or userdata without __tostring says nothing to people; its __tostring is script code, and
@@ -194,7 +195,9 @@ std::string Sandbox::failure_text(lua_State* thread, int status) {
   return text;
 }
 
-Sandbox& sandbox_of(lua_State* state) { return **static_cast<Sandbox**>(lua_getextraspace(state)); }
+Sandbox& sandbox_of(lua_State* state) {
+  return **static_cast<Sandbox**>(lua_getextraspace(state));
+}
 
 void charge(lua_State* state, std::uint64_t instructions) {
   Sandbox& sandbox = sandbox_of(state);
@@ -221,6 +224,11 @@ void raise_kill(lua_State* state, const std::string& reason) {
   throw Kill{};
 }
 
+void raise_memory_kill(lua_State* state) {
+  const std::size_t cap = sandbox_of(state).limits.memory_bytes;
+  raise_kill(state, fmt::format("the script needs more than its {} MiB of memory", cap >> 20));
+}
+
 void raise(lua_State* state, const std::string& message) {
   luaL_where(state, 1);
   lua_pushlstring(state, message.data(), message.size());
@@ -229,6 +237,8 @@ void raise(lua_State* state, const std::string& message) {
   std::abort();
 }
 
-int report_exception(lua_State* state, const char* what) { return luaL_error(state, "%s", what); }
+int report_exception(lua_State* state, const char* what) {
+  return luaL_error(state, "%s", what);
+}
 
 }  // namespace petrichor::script

@@ -63,6 +63,8 @@ Sandbox& sandbox_of(lua_State*);
 void charge(lua_State*, std::uint64_t instructions);
 // Ends the script: every pcall and coroutine boundary passes the error on.
 [[noreturn]] void raise_kill(lua_State*, const std::string& reason);
+// The same, because the memory cap was reached.
+[[noreturn]] void raise_memory_kill(lua_State*);
 // lua_error with the position of the caller in front.
 [[noreturn]] void raise(lua_State*, const std::string& message);
 
@@ -87,8 +89,5 @@ struct LibraryNames {
   std::vector<const char*> functions;
 };
 const std::vector<LibraryNames>& library_names();
-
-// Worst-case steps of a Lua pattern on a text of `length` bytes: the matcher backtracks, and no hook runs in it.
-double pattern_cost(std::string_view pattern, std::size_t length);
 
 }  // namespace petrichor::script

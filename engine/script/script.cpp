@@ -18,9 +18,12 @@ struct Pin {
   nlohmann::json value;
 };
 
-ScriptHost::Impl& host_of(lua_State* state) { return *static_cast<ScriptHost::Impl*>(sandbox_of(state).host); }
+ScriptHost::Impl& host_of(lua_State* state) {
+  return *static_cast<ScriptHost::Impl*>(sandbox_of(state).host);
+}
 
-Result<void> set_field(ScriptHost::Impl& host, const Schema& schema, const Field& field, void* component, const nlohmann::json& value) {
+Result<void> set_field(ScriptHost::Impl& host, const Schema& schema, const Field& field, void* component,
+                       const nlohmann::json& value) {
   for (const Pin& pin : host.pins) {
     if (pin.field == &field) return write_field(schema, field, component, pin.value);
   }
@@ -110,7 +113,9 @@ void ScriptHost::emit(std::string_view event, const nlohmann::json& argument) {
   impl_->timeline.emit_later(std::string(event), argument);
 }
 
-void ScriptHost::emit(std::string_view event) { emit(event, nlohmann::json()); }
+void ScriptHost::emit(std::string_view event) {
+  emit(event, nlohmann::json());
+}
 
 Result<void> ScriptHost::pin(std::string_view component, std::string_view field, const nlohmann::json& value) {
   Impl& self = *impl_;
@@ -120,7 +125,8 @@ Result<void> ScriptHost::pin(std::string_view component, std::string_view field,
   if (!found) return failure(fmt::format("{} has no field \"{}\"", component, field));
   {  // checked on a component of its own, so that a bad value changes nothing
     Registry scratch;
-    if (const auto checked = write_field(*schema, *found, schema->emplace(scratch, scratch.create()), value); !checked) return checked;
+    if (const auto checked = write_field(*schema, *found, schema->emplace(scratch, scratch.create()), value); !checked)
+      return checked;
   }
   std::erase_if(self.pins, [&](const script::Pin& p) { return p.field == found; });
   self.pins.push_back(script::Pin{found, value});
@@ -130,12 +136,21 @@ Result<void> ScriptHost::pin(std::string_view component, std::string_view field,
   return {};
 }
 
-const Cinematic& ScriptHost::cinematic() const { return impl_->cinematic; }
-std::optional<double> ScriptHost::duration_s() const { return impl_->cinematic.duration_s; }
-bool ScriptHost::busy() const { return impl_->timeline.busy(); }
-const std::vector<std::filesystem::path>& ScriptHost::files() const { return impl_->sandbox.files; }
+const Cinematic& ScriptHost::cinematic() const {
+  return impl_->cinematic;
+}
+std::optional<double> ScriptHost::duration_s() const {
+  return impl_->cinematic.duration_s;
+}
+bool ScriptHost::busy() const {
+  return impl_->timeline.busy();
+}
+const std::vector<std::filesystem::path>& ScriptHost::files() const {
+  return impl_->sandbox.files;
+}
 
-Result<nlohmann::json> read_table(const std::filesystem::path& file, const ScriptOptions& options, std::vector<std::filesystem::path>* files) {
+Result<nlohmann::json> read_table(const std::filesystem::path& file, const ScriptOptions& options,
+                                  std::vector<std::filesystem::path>* files) {
   Sandbox sandbox(options);
   sandbox.begin(options.limits.load_instructions);
   Result<nlohmann::json> value = nlohmann::json();
@@ -157,11 +172,13 @@ Result<nlohmann::json> read_table(const std::filesystem::path& file, const Scrip
   int results = 0;
   const int status = lua_resume(thread, sandbox.state, 0, &results);
   if (files) *files = sandbox.files;
-  if (status == LUA_YIELD) return failure(fmt::format("{}: a file that returns a table cannot yield", file.generic_string()));
+  if (status == LUA_YIELD)
+    return failure(fmt::format("{}: a file that returns a table cannot yield", file.generic_string()));
   if (status != LUA_OK) return failure(sandbox.failure_text(thread, status));
   safe = sandbox.protect([&](lua_State* state) {
     if (results < 1 || !lua_istable(thread, -results)) {
-      value = failure(fmt::format("returns {}, expected a table", results < 1 ? "nothing" : script::describe(thread, -results)));
+      value = failure(
+          fmt::format("returns {}, expected a table", results < 1 ? "nothing" : script::describe(thread, -results)));
       return;
     }
     lua_settop(thread, -results);

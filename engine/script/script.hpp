@@ -54,7 +54,7 @@ struct ScriptNames {
 struct ScriptOptions {
   std::vector<std::filesystem::path> roots;  // folders that `require` looks in, in order
   ScriptLimits limits;
-  std::uint64_t seed = 1;                                   // of math.random
+  std::uint64_t seed = 1;                                      // of math.random
   std::vector<std::pair<std::string, std::string>> arguments;  // the global table `args`
   ScriptServices services;
   ScriptNames names;

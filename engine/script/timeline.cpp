@@ -159,7 +159,9 @@ int Timeline::wait_for_event(lua_State* state, const std::string& event) {
 
 int Timeline::run_track(lua_State* state, Track track) {
   for (Track& other : tracks_) {
-    std::erase_if(other.targets, [&](const Target& t) { return std::find(track.targets.begin(), track.targets.end(), t) != track.targets.end(); });
+    std::erase_if(other.targets, [&](const Target& t) {
+      return std::find(track.targets.begin(), track.targets.end(), t) != track.targets.end();
+    });
   }
   track.task = current_;
   track.start_s = now_s_;

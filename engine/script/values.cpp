@@ -15,18 +15,25 @@ namespace {
 using nlohmann::json;
 
 constexpr const char* vector_metatable = "petrichor.vector";
-constexpr int deepest = 64;
-constexpr std::size_t most_values = 1'000'000;
 
 // 0..3 for x y z w and r g b a, -1 for anything else.
 int element_of(lua_State* state, int index) {
   if (lua_type(state, index) != LUA_TSTRING || lua_rawlen(state, index) != 1) return -1;
   switch (*lua_tostring(state, index)) {
-    case 'x': case 'r': return 0;
-    case 'y': case 'g': return 1;
-    case 'z': case 'b': return 2;
-    case 'w': case 'a': return 3;
-    default: return -1;
+    case 'x':
+    case 'r':
+      return 0;
+    case 'y':
+    case 'g':
+      return 1;
+    case 'z':
+    case 'b':
+      return 2;
+    case 'w':
+    case 'a':
+      return 3;
+    default:
+      return -1;
   }
 }
 
@@ -65,22 +72,33 @@ int arithmetic(lua_State* state, const char* sign, Op op) {
   const bool a_is_number = lua_type(state, 1) == LUA_TNUMBER;
   const bool b_is_number = lua_type(state, 2) == LUA_TNUMBER;
   if ((!a_is_number && !lua_istable(state, 1)) || (!b_is_number && !lua_istable(state, 2))) {
-    return luaL_error(state, "a vector %s %s makes no sense", sign, luaL_typename(state, a_is_number || lua_istable(state, 1) ? 2 : 1));
+    return luaL_error(state, "a vector %s %s makes no sense", sign,
+                      luaL_typename(state, a_is_number || lua_istable(state, 1) ? 2 : 1));
   }
   Vector a = a_is_number ? Vector{} : get_vector(state, 1);
   Vector b = b_is_number ? Vector{} : get_vector(state, 2);
   if (a_is_number) a.size = b.size, a.v.fill(lua_tonumber(state, 1));
   if (b_is_number) b.size = a.size, b.v.fill(lua_tonumber(state, 2));
-  if (a.size != b.size) return luaL_error(state, "vectors of %d and %d numbers do not go together", static_cast<int>(a.size), static_cast<int>(b.size));
+  if (a.size != b.size)
+    return luaL_error(state, "vectors of %d and %d numbers do not go together", static_cast<int>(a.size),
+                      static_cast<int>(b.size));
   for (std::size_t i = 0; i < a.size; ++i) a.v[i] = op(a.v[i], b.v[i]);
   push_vector(state, std::span(a.v).first(a.size));
   return 1;
 }
 
-int vector_add(lua_State* s) { return arithmetic(s, "+", [](double a, double b) { return a + b; }); }
-int vector_subtract(lua_State* s) { return arithmetic(s, "-", [](double a, double b) { return a - b; }); }
-int vector_multiply(lua_State* s) { return arithmetic(s, "*", [](double a, double b) { return a * b; }); }
-int vector_divide(lua_State* s) { return arithmetic(s, "/", [](double a, double b) { return a / b; }); }
+int vector_add(lua_State* s) {
+  return arithmetic(s, "+", [](double a, double b) { return a + b; });
+}
+int vector_subtract(lua_State* s) {
+  return arithmetic(s, "-", [](double a, double b) { return a - b; });
+}
+int vector_multiply(lua_State* s) {
+  return arithmetic(s, "*", [](double a, double b) { return a * b; });
+}
+int vector_divide(lua_State* s) {
+  return arithmetic(s, "/", [](double a, double b) { return a / b; });
+}
 
 int vector_negate(lua_State* state) {
   Vector a = get_vector(state, 1);
@@ -109,112 +127,17 @@ int vector_text(lua_State* state) {
   return 1;
 }
 
-// Texts go to JSON files and to the screen: UTF-8 only.
-bool is_utf8(std::string_view text) {
-  for (std::size_t i = 0; i < text.size();) {
-    const auto byte = static_cast<unsigned char>(text[i]);
-    const std::size_t length = byte < 0x80 ? 1 : byte >= 0xc2 && byte < 0xe0 ? 2 : byte >= 0xe0 && byte < 0xf0 ? 3 : byte >= 0xf0 && byte < 0xf5 ? 4 : 0;
-    if (length == 0 || i + length > text.size()) return false;
-    for (std::size_t k = 1; k < length; ++k) {
-      if ((static_cast<unsigned char>(text[i + k]) & 0xc0) != 0x80) return false;
-    }
-    const auto second = length > 2 ? static_cast<unsigned char>(text[i + 1]) : 0;
-    if ((byte == 0xe0 && second < 0xa0) || (byte == 0xed && second > 0x9f) || (byte == 0xf0 && second < 0x90) || (byte == 0xf4 && second > 0x8f)) return false;
-    i += length;
-  }
-  return true;
-}
-
-// The walk of to_json. Only raw access: no metamethod of the script runs.
-struct JsonWriter {
-  lua_State* state;
-  std::vector<const void*> open_tables;
-  std::size_t values = 0;
-
-  Result<json> value(int index, const std::string& place) {
-    if (++values > most_values) return failure(fmt::format("{}: more than {} values", place, most_values));
-    switch (lua_type(state, index)) {
-      case LUA_TNIL: return json(nullptr);
-      case LUA_TBOOLEAN: return json(lua_toboolean(state, index) != 0);
-      case LUA_TNUMBER: {
-        if (lua_isinteger(state, index)) return json(static_cast<std::int64_t>(lua_tointeger(state, index)));
-        const double number = lua_tonumber(state, index);
-        if (!std::isfinite(number)) return failure(fmt::format("{}: {} is no finite number", place, number));
-        return json(number);
-      }
-      case LUA_TSTRING: {
-        std::size_t length = 0;
-        const char* text = lua_tolstring(state, index, &length);
-        if (!is_utf8(std::string_view(text, length))) return failure(fmt::format("{}: a string that is not UTF-8", place));
-        return json(std::string(text, length));
-      }
-      case LUA_TTABLE: return table(index, place);
-      default: return failure(fmt::format("{}: a {} is no data; give numbers, strings, booleans and tables", place, luaL_typename(state, index)));
-    }
-  }
-
-  Result<json> table(int index, const std::string& place) {
-    const void* self = lua_topointer(state, index);
-    if (std::find(open_tables.begin(), open_tables.end(), self) != open_tables.end()) {
-      return failure(fmt::format("{}: the table contains itself", place));
-    }
-    if (open_tables.size() >= deepest) return failure(fmt::format("{}: tables are nested more than {} deep", place, deepest));
-    if (!lua_checkstack(state, 8)) return failure(fmt::format("{}: tables are nested too deep", place));
-    open_tables.push_back(self);
-
-    std::size_t count = 0;
-    bool is_list = true;
-    const auto length = static_cast<std::size_t>(lua_rawlen(state, index));
-    lua_pushnil(state);
-    while (lua_next(state, index)) {
-      lua_pop(state, 1);
-      ++count;
-      if (!lua_isinteger(state, -1) || lua_tointeger(state, -1) < 1 || static_cast<std::size_t>(lua_tointeger(state, -1)) > length) is_list = false;
-    }
-    if (count == 0) is_list = false;
-
-    json out = is_list ? json::array() : json::object();
-    if (is_list) {
-      for (std::size_t i = 1; i <= length; ++i) {
-        lua_rawgeti(state, index, static_cast<lua_Integer>(i));
-        auto item = value(lua_gettop(state), fmt::format("{}[{}]", place, i));
-        lua_pop(state, 1);
-        if (!item) return item;
-        out.push_back(std::move(*item));
-      }
-    } else {
-      lua_pushnil(state);
-      while (lua_next(state, index)) {
-        std::string key;
-        if (lua_type(state, -2) == LUA_TSTRING) {
-          std::size_t key_length = 0;
-          const char* text = lua_tolstring(state, -2, &key_length);
-          key.assign(text, key_length);
-          if (!is_utf8(key)) return failure(fmt::format("{}: a key that is not UTF-8", place));
-        } else if (lua_isinteger(state, -2)) {
-          key = std::to_string(lua_tointeger(state, -2));
-        } else {
-          return failure(fmt::format("{}: a {} as a key; keys are strings or whole numbers", place, luaL_typename(state, -2)));
-        }
-        const std::string inside = place + "." + key;
-        if (out.contains(key)) return failure(fmt::format("{}: there as a number and as a string", inside));
-        auto item = value(lua_gettop(state), inside);
-        lua_pop(state, 1);
-        if (!item) return item;
-        out[key] = std::move(*item);
-      }
-    }
-    open_tables.pop_back();
-    return out;
-  }
-};
-
 std::size_t elements_of(FieldType type) {
   switch (type) {
-    case FieldType::vec2: return 2;
-    case FieldType::vec3: case FieldType::colour: return 3;
-    case FieldType::rotation: return 4;
-    default: return 0;
+    case FieldType::vec2:
+      return 2;
+    case FieldType::vec3:
+    case FieldType::colour:
+      return 3;
+    case FieldType::rotation:
+      return 4;
+    default:
+      return 0;
   }
 }
 
@@ -222,10 +145,10 @@ std::size_t elements_of(FieldType type) {
 
 void open_vectors(lua_State* state) {
   luaL_newmetatable(state, vector_metatable);
-  const luaL_Reg functions[] = {{"__index", guarded<vector_index>}, {"__newindex", guarded<vector_newindex>},
-                                {"__add", guarded<vector_add>}, {"__sub", guarded<vector_subtract>},
-                                {"__mul", guarded<vector_multiply>}, {"__div", guarded<vector_divide>},
-                                {"__unm", guarded<vector_negate>}, {"__eq", guarded<vector_equal>},
+  const luaL_Reg functions[] = {{"__index", guarded<vector_index>},   {"__newindex", guarded<vector_newindex>},
+                                {"__add", guarded<vector_add>},       {"__sub", guarded<vector_subtract>},
+                                {"__mul", guarded<vector_multiply>},  {"__div", guarded<vector_divide>},
+                                {"__unm", guarded<vector_negate>},    {"__eq", guarded<vector_equal>},
                                 {"__tostring", guarded<vector_text>}, {nullptr, nullptr}};
   luaL_setfuncs(state, functions, 0);
   lua_pushliteral(state, "vector");
@@ -246,7 +169,9 @@ void check_vector(lua_State* state, int index, std::span<double> out, const std:
   index = lua_absindex(state, index);
   const auto refuse = [&] {
     raise(state, fmt::format("{}: got {}, expected {} numbers such as {}", what, describe(state, index), out.size(),
-                             out.size() == 2 ? "{1, 2}" : out.size() == 3 ? "{1, 2, 3} or {x=1, y=2, z=3}" : "{x, y, z, w}"));
+                             out.size() == 2   ? "{1, 2}"
+                             : out.size() == 3 ? "{1, 2, 3} or {x=1, y=2, z=3}"
+                                               : "{x, y, z, w}"));
   };
   if (!lua_istable(state, index)) refuse();
   std::size_t found = 0;
@@ -287,7 +212,8 @@ json check_field_value(lua_State* state, int index, const Schema& schema, const 
     return out;
   }
   switch (lua_type(state, index)) {
-    case LUA_TBOOLEAN: return lua_toboolean(state, index) != 0;
+    case LUA_TBOOLEAN:
+      return lua_toboolean(state, index) != 0;
     case LUA_TNUMBER:
       if (lua_isinteger(state, index)) return static_cast<std::int64_t>(lua_tointeger(state, index));
       return lua_tonumber(state, index);
@@ -297,24 +223,34 @@ json check_field_value(lua_State* state, int index, const Schema& schema, const 
       if (!is_utf8(std::string_view(text, length))) raise(state, what + ": the text is not UTF-8");
       return std::string(text, length);
     }
-    default: raise(state, fmt::format("{}: got {}, expected a value", what, describe(state, index)));
+    default:
+      raise(state, fmt::format("{}: got {}, expected a value", what, describe(state, index)));
   }
 }
 
 void push_json(lua_State* state, const json& value) {
   luaL_checkstack(state, 4, "nested too deep");
   switch (value.type()) {
-    case json::value_t::boolean: lua_pushboolean(state, value.get<bool>()); return;
-    case json::value_t::number_integer: lua_pushinteger(state, value.get<std::int64_t>()); return;
-    case json::value_t::number_unsigned: lua_pushinteger(state, static_cast<lua_Integer>(value.get<std::uint64_t>())); return;
-    case json::value_t::number_float: lua_pushnumber(state, value.get<double>()); return;
+    case json::value_t::boolean:
+      lua_pushboolean(state, value.get<bool>());
+      return;
+    case json::value_t::number_integer:
+      lua_pushinteger(state, value.get<std::int64_t>());
+      return;
+    case json::value_t::number_unsigned:
+      lua_pushinteger(state, static_cast<lua_Integer>(value.get<std::uint64_t>()));
+      return;
+    case json::value_t::number_float:
+      lua_pushnumber(state, value.get<double>());
+      return;
     case json::value_t::string: {
       const auto& text = value.get_ref<const std::string&>();
       lua_pushlstring(state, text.data(), text.size());
       return;
     }
     case json::value_t::array: {
-      if (value.size() >= 2 && value.size() <= 4 && std::all_of(value.begin(), value.end(), [](const json& v) { return v.is_number(); })) {
+      if (value.size() >= 2 && value.size() <= 4 &&
+          std::all_of(value.begin(), value.end(), [](const json& v) { return v.is_number(); })) {
         std::array<double, 4> numbers{};
         for (std::size_t i = 0; i < value.size(); ++i) numbers[i] = value[i].get<double>();
         push_vector(state, std::span(numbers).first(value.size()));
@@ -335,26 +271,30 @@ void push_json(lua_State* state, const json& value) {
         lua_rawset(state, -3);
       }
       return;
-    default: lua_pushnil(state); return;
+    default:
+      lua_pushnil(state);
+      return;
   }
-}
-
-Result<json> to_json(lua_State* state, int index) {
-  JsonWriter writer{state, {}, 0};
-  return writer.value(lua_absindex(state, index), "the table");
 }
 
 std::string describe(lua_State* state, int index) {
   switch (lua_type(state, index)) {
-    case LUA_TNIL: case LUA_TNONE: return "nil";
-    case LUA_TBOOLEAN: return lua_toboolean(state, index) ? "true" : "false";
-    case LUA_TNUMBER: return lua_isinteger(state, index) ? fmt::format("{}", lua_tointeger(state, index)) : fmt::format("{}", lua_tonumber(state, index));
+    case LUA_TNIL:
+    case LUA_TNONE:
+      return "nil";
+    case LUA_TBOOLEAN:
+      return lua_toboolean(state, index) ? "true" : "false";
+    case LUA_TNUMBER:
+      return lua_isinteger(state, index) ? fmt::format("{}", lua_tointeger(state, index))
+                                         : fmt::format("{}", lua_tonumber(state, index));
     case LUA_TSTRING: {
       std::size_t length = 0;
       const char* text = lua_tolstring(state, index, &length);
-      return length <= 60 ? fmt::format("the string \"{}\"", std::string_view(text, length)) : fmt::format("a string of {} bytes", length);
+      return length <= 60 ? fmt::format("the string \"{}\"", std::string_view(text, length))
+                          : fmt::format("a string of {} bytes", length);
     }
-    default: return fmt::format("a {}", luaL_typename(state, index));
+    default:
+      return fmt::format("a {}", luaL_typename(state, index));
   }
 }
 

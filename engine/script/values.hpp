@@ -26,6 +26,9 @@ void push_json(lua_State*, const nlohmann::json&);
 // Any table of plain data as JSON (see read_table); the error names the place, "passes[2].reads".
 Result<nlohmann::json> to_json(lua_State*, int index);
 
+// Texts go to JSON files and to the screen: UTF-8 only.
+bool is_utf8(std::string_view);
+
 // What a value is, for messages: `the string "abc"`, `a table`.
 std::string describe(lua_State*, int index);
 

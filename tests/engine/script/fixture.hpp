@@ -47,7 +47,9 @@ class ScriptTest : public testing::Test {
     const auto result = run(text);
     EXPECT_TRUE(result) << result.error().message;
   }
-  static bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+  static bool contains(const std::string& text, const std::string& part) {
+    return text.find(part) != std::string::npos;
+  }
 
   std::filesystem::path folder;
   Registry registry;

@@ -31,7 +31,8 @@ TEST_F(ReadTable, TablesBecomeJson) {
   EXPECT_EQ(value("return {[1]=1, [3]=3}"), json::parse(R"({"1": 1, "3": 3})"));
   EXPECT_EQ(value("return {[-1]=1, [0]=2}"), json::parse(R"({"-1": 1, "0": 2})"));
   EXPECT_EQ(value("return {}"), json::object());
-  EXPECT_EQ(value("return {v=vec3 and 1 or 0, i=9007199254740993, f=3.0}"), json::parse(R"({"v": 0, "i": 9007199254740993, "f": 3.0})"));
+  EXPECT_EQ(value("return {v=vec3 and 1 or 0, i=9007199254740993, f=3.0}"),
+            json::parse(R"({"v": 0, "i": 9007199254740993, "f": 3.0})"));
   EXPECT_TRUE(value("return {3}")[0].is_number_integer());
   EXPECT_TRUE(value("return {3.0}")[0].is_number_float());
   // The same table in two places is no cycle.
@@ -58,7 +59,8 @@ TEST_F(ReadTable, WhatIsNoDataIsAnErrorWithItsPlace) {
   EXPECT_CONTAINS(message("error('wet')"), "t.lua:1: wet");
   EXPECT_CONTAINS(message("return = 3"), "t.lua:1:");
   // No metamethod of the script runs, or hides, anything.
-  EXPECT_EQ(value("return setmetatable({a=1}, {__index={b=2}, __pairs=error, __len=error})"), json::parse(R"({"a": 1})"));
+  EXPECT_EQ(value("return setmetatable({a=1}, {__index={b=2}, __pairs=error, __len=error})"),
+            json::parse(R"({"a": 1})"));
 }
 
 TEST_F(ReadTable, ItIsASandboxOfItsOwn) {

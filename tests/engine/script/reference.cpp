@@ -27,23 +27,29 @@ names(_G, "")
   for (const std::string& name : printed) {
     const auto dot = name.find('.');
     const std::string short_name = name.substr(dot == std::string::npos ? 0 : dot + 1);
-    EXPECT_TRUE(contains(page, "`" + name + "(") || contains(page, "`" + name + "{") || contains(page, "`" + short_name + "`")) << name;
+    EXPECT_TRUE(contains(page, "`" + name + "(") || contains(page, "`" + name + "{") ||
+                contains(page, "`" + short_name + "`"))
+        << name;
   }
   // And each row of the page is a function that is there.
   std::istringstream lines(page);
   int rows = 0;
   for (std::string line; std::getline(lines, line);) {
-    if (!line.starts_with("| `") || contains(line, "| `coroutine`") || contains(line, "| `math`") || contains(line, "| `string`") || contains(line, "| `table`") ||
-        contains(line, "| `utf8`")) {
+    if (!line.starts_with("| `") || contains(line, "| `coroutine`") || contains(line, "| `math`") ||
+        contains(line, "| `string`") || contains(line, "| `table`") || contains(line, "| `utf8`")) {
       continue;
     }
     ++rows;
     std::string name = line.substr(3, line.find_first_of("({", 3) - 3);
     const auto colon = name.find(':');
-    if (colon == std::string::npos) expect_ok("assert(type(" + name + ") == 'function')");
-    else if (name.starts_with("entity")) expect_ok("assert(type(world.spawn{}." + name.substr(colon + 1) + ") == 'function')");
-    else if (name.starts_with("handler")) expect_ok("assert(type(on('x', print)." + name.substr(colon + 1) + ") == 'function')");
-    else EXPECT_TRUE(name.starts_with("model")) << name;
+    if (colon == std::string::npos)
+      expect_ok("assert(type(" + name + ") == 'function')");
+    else if (name.starts_with("entity"))
+      expect_ok("assert(type(world.spawn{}." + name.substr(colon + 1) + ") == 'function')");
+    else if (name.starts_with("handler"))
+      expect_ok("assert(type(on('x', print)." + name.substr(colon + 1) + ") == 'function')");
+    else
+      EXPECT_TRUE(name.starts_with("model")) << name;
   }
   EXPECT_GT(rows, 25);
 }

@@ -57,6 +57,14 @@ class OwnScripts : public ScriptTest {
     return out;
   }
 
+  Entity active_camera_entity() {
+    Entity found;
+    registry.view<Camera>().each([&](Entity e, Camera& c) {
+      if (c.active) found = e;
+    });
+    return found;
+  }
+
   std::vector<std::filesystem::path> loaded;
   bool with_light = false, with_bounds = true;
   glm::vec3 low{-2, 0, -2}, high{2, 3, 2};
@@ -95,7 +103,11 @@ TEST_F(OwnScripts, TheSandboxChangesItsWeather) {
   EXPECT_NEAR(active_camera().first.position_m.y, 1.8f, 1e-5f);
   EXPECT_EQ(registry.size<Walker>(), 1u);
   double now_s = 0.0;
-  for (const auto& [key, least, most] : {std::tuple{"key:1", 0.2f, 2.0f}, {"key:2", 4.0f, 15.0f}, {"key:3", 30.0f, 100.0f}, {"key:4", 0.0f, 0.0f}, {"weather:downpour", 30.0f, 100.0f}}) {
+  for (const auto& [key, least, most] : {std::tuple{"key:1", 0.2f, 2.0f},
+                                         {"key:2", 4.0f, 15.0f},
+                                         {"key:3", 30.0f, 100.0f},
+                                         {"key:4", 0.0f, 0.0f},
+                                         {"weather:downpour", 30.0f, 100.0f}}) {
     host().emit(key);
     advance(now_s += 0.1);
     advance(now_s += 10.0);
@@ -118,8 +130,12 @@ TEST_F(OwnScripts, ModelsAreFramedAndLit) {
 }
 
 TEST_F(OwnScripts, TheWholeModelIsInThePicture) {
-  for (const auto& [a, b] : {std::pair{glm::vec3(-2, 0, -2), glm::vec3(2, 3, 2)}, {glm::vec3(-60, -1, -60), glm::vec3(60, 25, 60)}, {glm::vec3(0.001f), glm::vec3(0.002f)},
-                             {glm::vec3(-1, 0, 0), glm::vec3(1, 0, 0)}, {glm::vec3(500, 0, 0), glm::vec3(500, 40, 3)}, {glm::vec3(1, 2, 3), glm::vec3(1, 2, 3)}}) {
+  for (const auto& [a, b] : {std::pair{glm::vec3(-2, 0, -2), glm::vec3(2, 3, 2)},
+                             {glm::vec3(-60, -1, -60), glm::vec3(60, 25, 60)},
+                             {glm::vec3(0.001f), glm::vec3(0.002f)},
+                             {glm::vec3(-1, 0, 0), glm::vec3(1, 0, 0)},
+                             {glm::vec3(500, 0, 0), glm::vec3(500, 40, 3)},
+                             {glm::vec3(1, 2, 3), glm::vec3(1, 2, 3)}}) {
     made.reset();
     registry.clear();
     low = a;
@@ -140,7 +156,8 @@ TEST_F(OwnScripts, TheWholeModelIsInThePicture) {
     }
     // The walker would not turn the camera away: its angles say the same as the rotation.
     const Walker& walker = the<Walker>();
-    const glm::quat looks = glm::angleAxis(glm::radians(-walker.yaw_deg), glm::vec3(0, 1, 0)) * glm::angleAxis(glm::radians(walker.pitch_deg), glm::vec3(1, 0, 0));
+    const glm::quat looks = glm::angleAxis(glm::radians(-walker.yaw_deg), glm::vec3(0, 1, 0)) *
+                            glm::angleAxis(glm::radians(walker.pitch_deg), glm::vec3(1, 0, 0));
     EXPECT_LT(glm::length(looks * glm::vec3(0, 0, -1) - transform.orientation * glm::vec3(0, 0, -1)), 1e-3f);
   }
 }
@@ -157,6 +174,11 @@ TEST_F(OwnScripts, EmptyRainIsNothingButRain) {
   EXPECT_EQ(registry.size<MeshInstance>(), 0u);
   EXPECT_GT(the<Emitter>().rain_mm_per_hour, 0.0f);
   active_camera();
+}
+
+TEST_F(OwnScripts, TheCityIsAPictureByItself) {
+  run_script("scenes/city.lua");
+  EXPECT_EQ(registry.get<Name>(active_camera_entity()).text, "view_crossing");
 }
 
 TEST_F(OwnScripts, EveryPresetIsWeather) {

@@ -34,9 +34,10 @@ class TimelineTest : public ScriptTest {
 };
 
 TEST_F(TimelineTest, TweensAreExactAtAnyStep) {
-  const std::string text = "local rain = world.spawn{emitter={rain_mm_per_hour=2}}\n"
-                           "timeline(function() wait(1.5) tween(rain.emitter, 'rain_mm_per_hour', 50, 4) print(world.time()) "
-                           "tween(rain.emitter, 'rain_mm_per_hour', 10, 1) end)";
+  const std::string text =
+      "local rain = world.spawn{emitter={rain_mm_per_hour=2}}\n"
+      "timeline(function() wait(1.5) tween(rain.emitter, 'rain_mm_per_hour', 50, 4) print(world.time()) "
+      "tween(rain.emitter, 'rain_mm_per_hour', 10, 1) end)";
   for (const double step_s : {1.0 / 60, 1.0 / 24, 0.37, 1.0, 7.0}) {
     play(text, step_s, 3.5);
     EXPECT_FLOAT_EQ(emitter().rain_mm_per_hour, 26.0f) << step_s;  // half way
@@ -65,8 +66,12 @@ go(function() wait(0.7) rain.transform.position_m = {rain.emitter.rain_mm_per_ho
     play(text, step_s, 2.3);
     std::vector<float> now;
     registry.view<Emitter, Wind, Transform, Light>().each([&](Entity, Emitter& e, Wind& w, Transform& t, Light& l) {
-      now = {e.rain_mm_per_hour, static_cast<float>(e.maximum_drops), w.gust_mps, w.velocity_mps.x, w.velocity_mps.z, t.orientation.w, t.orientation.y,
-             t.position_m.x, t.position_m.y, l.colour.r, l.colour.b};
+      now = {e.rain_mm_per_hour, static_cast<float>(e.maximum_drops),
+             w.gust_mps,         w.velocity_mps.x,
+             w.velocity_mps.z,   t.orientation.w,
+             t.orientation.y,    t.position_m.x,
+             t.position_m.y,     l.colour.r,
+             l.colour.b};
     });
     if (first.empty()) first = now;
     EXPECT_EQ(now, first) << step_s;
@@ -77,7 +82,10 @@ go(function() wait(0.7) rain.transform.position_m = {rain.emitter.rain_mm_per_ho
 }
 
 TEST_F(TimelineTest, OrderIsWakeTimeThenCreation) {
-  play("for i, t in ipairs{0.3, 0.1, 0.2, 0.1, 0.3} do go(function() wait(t) print(i .. ' at ' .. world.time()) end) end", 1.0, 1.0);
+  play(
+      "for i, t in ipairs{0.3, 0.1, 0.2, 0.1, 0.3} do go(function() wait(t) print(i .. ' at ' .. world.time()) end) "
+      "end",
+      1.0, 1.0);
   EXPECT_EQ(printed, (std::vector<std::string>{"2 at 0.1", "4 at 0.1", "3 at 0.2", "1 at 0.3", "5 at 0.3"}));
 }
 
@@ -87,14 +95,18 @@ TEST_F(TimelineTest, WaitWithoutATimeIsOneStep) {
 }
 
 TEST_F(TimelineTest, TheScriptItselfMayWait) {
-  play("print(world.time()) wait(2) print(world.time()) wait_until(5) print(world.time()) wait_until(1) print('still ' .. world.time())", 3.0, 9.0);
+  play(
+      "print(world.time()) wait(2) print(world.time()) wait_until(5) print(world.time()) wait_until(1) print('still ' "
+      ".. world.time())",
+      3.0, 9.0);
   EXPECT_EQ(printed, (std::vector<std::string>{"0.0", "2.0", "5.0", "still 5.0"}));
 }
 
 TEST_F(TimelineTest, ALaterTweenTakesTheFieldOver) {
-  play("rain = world.spawn{emitter={}} go(function() tween(rain.emitter, 'rain_mm_per_hour', 100, 10) end) "
-       "go(function() wait(1) tween(rain.emitter, 'rain_mm_per_hour', 0, 1) end)",
-       0.1, 1.5);
+  play(
+      "rain = world.spawn{emitter={}} go(function() tween(rain.emitter, 'rain_mm_per_hour', 100, 10) end) "
+      "go(function() wait(1) tween(rain.emitter, 'rain_mm_per_hour', 0, 1) end)",
+      0.1, 1.5);
   EXPECT_NEAR(emitter().rain_mm_per_hour, 5.0f, 1e-4);
   advance(5.0);
   EXPECT_EQ(emitter().rain_mm_per_hour, 0.0f);
@@ -132,7 +144,9 @@ TEST_F(TimelineTest, TweenErrorsAreToldAtTheLine) {
 }
 
 TEST_F(TimelineTest, TweeningADestroyedEntityEndsTheStory) {
-  expect_ok("e = world.spawn{emitter={}}\ngo(function()\n  tween(e.emitter, 'rain_mm_per_hour', 9, 5)\nend)\ngo(function() wait(1) e:destroy() end)");
+  expect_ok(
+      "e = world.spawn{emitter={}}\ngo(function()\n  tween(e.emitter, 'rain_mm_per_hour', 9, 5)\nend)\ngo(function() "
+      "wait(1) e:destroy() end)");
   advance(0.5);
   const auto result = host().advance(2.0);
   ASSERT_FALSE(result);
@@ -141,7 +155,8 @@ TEST_F(TimelineTest, TweeningADestroyedEntityEndsTheStory) {
 }
 
 TEST_F(TimelineTest, AFailingStoryDoesNotStopTheOthers) {
-  expect_ok("go(function() wait(1)\nerror('first') end) go(function() wait(1) print('second') wait(1) print('third') end)");
+  expect_ok(
+      "go(function() wait(1)\nerror('first') end) go(function() wait(1) print('second') wait(1) print('third') end)");
   advance(0.0);
   const auto result = host().advance(1.0);
   ASSERT_FALSE(result);
@@ -154,8 +169,9 @@ TEST_F(TimelineTest, AFailingStoryDoesNotStopTheOthers) {
 
 TEST_F(TimelineTest, AnEndlessStoryIsStoppedAndTheOthersGoOn) {
   options.limits.step_instructions = 1'000'000;
-  expect_ok("go(function() wait(1) while true do pcall(function() while true do end end) end end) "
-            "go(function() wait(1) print('second') end) go(function() while true do wait(1e-7) end end)");
+  expect_ok(
+      "go(function() wait(1) while true do pcall(function() while true do end end) end end) "
+      "go(function() wait(1) print('second') end) go(function() while true do wait(1e-7) end end)");
   advance(0.0);
   auto result = host().advance(1.0);
   ASSERT_FALSE(result);  // the many tiny waits
@@ -178,15 +194,17 @@ TEST_F(TimelineTest, TheTimelineOwnsItsCoroutines) {
 }
 
 TEST_F(TimelineTest, PcallMayWait) {
-  play("go(function() print(pcall(function() wait(1) error('late', 0) end)) wait(1) print(world.time()) end)", 0.5, 3.0);
+  play("go(function() print(pcall(function() wait(1) error('late', 0) end)) wait(1) print(world.time()) end)", 0.5,
+       3.0);
   EXPECT_EQ(printed, (std::vector<std::string>{"false\tlate", "2.0"}));
 }
 
 TEST_F(TimelineTest, EventsReachWhoListens) {
-  expect_ok("local h = on('bell', function(n) wait(0.5) print('heard', n, world.time()) end)\n"
-            "on('off', function() h:off() end)\n"
-            "go(function() while true do print('got', wait_for('bell')) end end)\n"
-            "go(function() wait(1) print(emit('bell', 7), emit('nobody')) end)");
+  expect_ok(
+      "local h = on('bell', function(n) wait(0.5) print('heard', n, world.time()) end)\n"
+      "on('off', function() h:off() end)\n"
+      "go(function() while true do print('got', wait_for('bell')) end end)\n"
+      "go(function() wait(1) print(emit('bell', 7), emit('nobody')) end)");
   advance(0.0);
   advance(2.0);
   EXPECT_EQ(printed, (std::vector<std::string>{"2\t0", "got\t7", "heard\t7\t1.5"}));
@@ -231,15 +249,17 @@ TEST_F(TimelineTest, SplinesPassTheirPointsSmoothly) {
 }
 
 TEST_F(TimelineTest, CameraPathsAreAFunctionOfTime) {
-  const std::string text = "local c = world.spawn{camera={}}\ngo(function() wait(1) camera.path{\n"
-                           "{time_s=0, position={0, 1.7, 10}, target={0, 1.7, 0}, fov=50},\n"
-                           "{time_s=2, position={1, 1.7, 6}, target={0, 2, 0}, fov=40},\n"
-                           "{time_s=5, position={0, 1.7, 2}, target={0, 3, 0}, fov=60}} print('through', world.time()) end)";
+  const std::string text =
+      "local c = world.spawn{camera={}}\ngo(function() wait(1) camera.path{\n"
+      "{time_s=0, position={0, 1.7, 10}, target={0, 1.7, 0}, fov=50},\n"
+      "{time_s=2, position={1, 1.7, 6}, target={0, 2, 0}, fov=40},\n"
+      "{time_s=5, position={0, 1.7, 2}, target={0, 3, 0}, fov=60}} print('through', world.time()) end)";
   std::vector<float> first;
   for (const double step_s : {1.0 / 24, 1.0 / 60, 4.3}) {
     play(text, step_s, 4.3);
     registry.view<Camera, Transform>().each([&](Entity, Camera& c, Transform& t) {
-      const std::vector<float> now{c.vertical_fov_deg, t.position_m.x, t.position_m.y, t.position_m.z, t.orientation.x, t.orientation.y, t.orientation.z, t.orientation.w};
+      const std::vector<float> now{c.vertical_fov_deg, t.position_m.x,  t.position_m.y,  t.position_m.z,
+                                   t.orientation.x,    t.orientation.y, t.orientation.z, t.orientation.w};
       if (first.empty()) first = now;
       EXPECT_EQ(now, first) << step_s;
       EXPECT_NEAR(t.position_m.y, 1.7f, 1e-6);
@@ -258,9 +278,10 @@ TEST_F(TimelineTest, CameraPathsAreAFunctionOfTime) {
 }
 
 TEST_F(TimelineTest, CameraPathsTakeTheActiveCameraOrTheGivenOne) {
-  expect_ok("a = world.spawn{camera={active=false}} b = world.spawn{camera={}} "
-            "camera.path{{time_s=0, position={1, 0, 0}}} camera.path{camera=a, {time_s=0, position={2, 0, 0}}} "
-            "assert(b.transform.position_m.x == 1 and a.transform.position_m.x == 2)");
+  expect_ok(
+      "a = world.spawn{camera={active=false}} b = world.spawn{camera={}} "
+      "camera.path{{time_s=0, position={1, 0, 0}}} camera.path{camera=a, {time_s=0, position={2, 0, 0}}} "
+      "assert(b.transform.position_m.x == 1 and a.transform.position_m.x == 2)");
 }
 
 TEST_F(TimelineTest, CameraPathErrors) {
@@ -276,7 +297,9 @@ TEST_F(TimelineTest, CameraPathErrors) {
 
 TEST_F(TimelineTest, PinnedFieldsHold) {
   ASSERT_TRUE(host().pin("emitter", "rain_mm_per_hour", 0));
-  expect_ok("local e = world.spawn{emitter={rain_mm_per_hour=20}} go(function() tween(e.emitter, 'rain_mm_per_hour', 50, 1) e.emitter.rain_mm_per_hour = 7 end)");
+  expect_ok(
+      "local e = world.spawn{emitter={rain_mm_per_hour=20}} go(function() tween(e.emitter, 'rain_mm_per_hour', 50, 1) "
+      "e.emitter.rain_mm_per_hour = 7 end)");
   EXPECT_EQ(emitter().rain_mm_per_hour, 0.0f);
   advance(0.5);
   EXPECT_EQ(emitter().rain_mm_per_hour, 0.0f);

@@ -19,10 +19,12 @@ struct Kettle {
 };
 
 TEST_F(World, AnySchemaIsBound) {
-  const std::vector<Schema> schemas{schema<Kettle>("kettle", "Boils.",
-                                                   {field<&Kettle::water_l>("water_l", "l", {0, 2}, "Water."), field<&Kettle::whistles>("whistles", "", {}, "Noise."),
-                                                    field<&Kettle::serial>("serial", "", {0, 1e15}, "Number."), field<&Kettle::spout_m>("spout_m", "m", {-1, 1}, "Tip."),
-                                                    field<&Kettle::maker>("maker", "", {}, "Who.")})};
+  const std::vector<Schema> schemas{schema<Kettle>(
+      "kettle", "Boils.",
+      {field<&Kettle::water_l>("water_l", "l", {0, 2}, "Water."),
+       field<&Kettle::whistles>("whistles", "", {}, "Noise."),
+       field<&Kettle::serial>("serial", "", {0, 1e15}, "Number."),
+       field<&Kettle::spout_m>("spout_m", "m", {-1, 1}, "Tip."), field<&Kettle::maker>("maker", "", {}, "Who.")})};
   ScriptHost kitchen(registry, schemas, options);
   const auto result = kitchen.run_file(write("k.lua", R"(
 local k = world.spawn{kettle={water_l=1.5, whistles=true, spout_m={x=0.5, y=-0.5}, maker="Ümit"}}
@@ -45,10 +47,11 @@ TEST_F(World, EveryFieldOfEveryComponentReadsBackWhatWasWritten) {
     if (s.fields.size() == 1 && s.fields[0].type == FieldType::text) {
       text += "e." + std::string(s.name) + " = 'x' assert(e." + std::string(s.name) + " == 'x')";
     } else {
-      text += "for field, value in pairs(e." + std::string(s.name) + ") do e." + std::string(s.name) + "[field] = value assert(e." + std::string(s.name) +
-              "[field] == value, field) end\n";
+      text += "for field, value in pairs(e." + std::string(s.name) + ") do e." + std::string(s.name) +
+              "[field] = value assert(e." + std::string(s.name) + "[field] == value, field) end\n";
     }
-    text += " assert(e:has('" + std::string(s.name) + "')) e." + std::string(s.name) + " = nil assert(not e:has('" + std::string(s.name) + "')) end\n";
+    text += " assert(e:has('" + std::string(s.name) + "')) e." + std::string(s.name) + " = nil assert(not e:has('" +
+            std::string(s.name) + "')) end\n";
   }
   expect_ok(text);
 }
@@ -69,8 +72,10 @@ print(rain.emitter.drop_sizes, rain.emitter, rain:alive())
 rain:destroy()
 print(rain:alive(), world.find("rain"))
 )");
-  EXPECT_EQ(printed, (std::vector<std::string>{"50.0\train\ttrue\tfalse\t{3, 0, 1}", "4.0\t" + std::string("0.95999997854233"), "4.0\t{0.5, 0.25, 0.125}\t0.25", "false\ttrue\tnil\t1\t0.0",
-                                               "gamma\temitter of entity \"rain\"\ttrue", "false\tnil"}));
+  EXPECT_EQ(printed,
+            (std::vector<std::string>{"50.0\train\ttrue\tfalse\t{3, 0, 1}", "4.0\t" + std::string("0.95999997854233"),
+                                      "4.0\t{0.5, 0.25, 0.125}\t0.25", "false\ttrue\tnil\t1\t0.0",
+                                      "gamma\temitter of entity \"rain\"\ttrue", "false\tnil"}));
   EXPECT_EQ(registry.size(), 0u);
 }
 
@@ -108,7 +113,8 @@ TEST_F(World, MistakesAreToldWithAHint) {
 
 TEST_F(World, ADestroyedEntityIsAClearError) {
   expect_ok("e = world.spawn{emitter={}} c = e.emitter e:destroy()");
-  for (const char* use : {"e.emitter = {}", "return e.emitter", "e:destroy()", "return e:has('emitter')", "e:add('fog')", "c.rain_mm_per_hour = 1", "return c.rain_mm_per_hour",
+  for (const char* use : {"e.emitter = {}", "return e.emitter", "e:destroy()", "return e:has('emitter')",
+                          "e:add('fog')", "c.rain_mm_per_hour = 1", "return c.rain_mm_per_hour",
                           "tween(c, 'rain_mm_per_hour', 1, 1)", "for k in pairs(c) do end"}) {
     const std::string message = error_of(use);
     EXPECT_CONTAINS(message, "destroyed");
@@ -118,20 +124,28 @@ TEST_F(World, ADestroyedEntityIsAClearError) {
   // Its successor in the same slot is somebody else.
   expect_ok("local f = world.spawn{emitter={}} print(f == e, e:alive(), f:alive())");
   EXPECT_EQ(printed.back(), "false\tfalse\ttrue");
-  EXPECT_CONTAINS(error_of("local e = world.spawn{emitter={}} local c = e.emitter e:remove('emitter') c.rain_mm_per_hour = 1"), "no emitter any more");
+  EXPECT_CONTAINS(
+      error_of("local e = world.spawn{emitter={}} local c = e.emitter e:remove('emitter') c.rain_mm_per_hour = 1"),
+      "no emitter any more");
 }
 
 TEST_F(World, EachMayChangeTheWorld) {
-  expect_ok("for i = 1, 5 do world.spawn{light={intensity_cd=i}} end local n = 0 "
-            "world.each('light', function(e) n = n + 1 world.spawn{light={}} if e:alive() then e:destroy() end end) print(n, world.count('light'))");
+  expect_ok(
+      "for i = 1, 5 do world.spawn{light={intensity_cd=i}} end local n = 0 "
+      "world.each('light', function(e) n = n + 1 world.spawn{light={}} if e:alive() then e:destroy() end end) print(n, "
+      "world.count('light'))");
   EXPECT_EQ(printed.back(), "5\t5");
 }
 
 TEST_F(World, RotationsPointWhereTheyShould) {
-  expect_ok("a = world.spawn{transform={orientation=look_at({0, 0, 0}, {1, 0, 0})}} b = world.spawn{transform={orientation=euler(90, 0, 0)}} "
-            "c = world.spawn{transform={orientation=look_at({0, 5, 0}, {0, 0, 0})}} d = world.spawn{transform={orientation=euler(0, 30)}}");
+  expect_ok(
+      "a = world.spawn{transform={orientation=look_at({0, 0, 0}, {1, 0, 0})}} b = "
+      "world.spawn{transform={orientation=euler(90, 0, 0)}} "
+      "c = world.spawn{transform={orientation=look_at({0, 5, 0}, {0, 0, 0})}} d = "
+      "world.spawn{transform={orientation=euler(0, 30)}}");
   std::vector<glm::vec3> forward;
-  registry.view<Transform>().each([&](Entity, Transform& t) { forward.push_back(t.orientation * glm::vec3(0, 0, -1)); });
+  registry.view<Transform>().each(
+      [&](Entity, Transform& t) { forward.push_back(t.orientation * glm::vec3(0, 0, -1)); });
   ASSERT_EQ(forward.size(), 4u);
   EXPECT_LT(glm::length(forward[0] - glm::vec3(1, 0, 0)), 1e-6f);
   EXPECT_LT(glm::length(forward[1] - glm::vec3(-1, 0, 0)), 1e-6f);  // yaw turns left
@@ -163,14 +177,18 @@ TEST_F(World, ModelsAreListsOfEntities) {
     parent = p;
     return {};
   };
-  expect_ok("local city = world.model('content/city.glb') print(#city, city[1].name, city:find('lamp') == city[2], city:find('x'), city:count('light')) "
-            "local low, high = city:bounds() print(low, high) city:each('light', function(e) print(e) end) world.spawn{name='bulb', parent=city[2]}");
+  expect_ok(
+      "local city = world.model('content/city.glb') print(#city, city[1].name, city:find('lamp') == city[2], "
+      "city:find('x'), city:count('light')) "
+      "local low, high = city:bounds() print(low, high) city:each('light', function(e) print(e) end) "
+      "world.spawn{name='bulb', parent=city[2]}");
   EXPECT_EQ(printed, (std::vector<std::string>{"3\troot\ttrue\tnil\t1", "{-1, 0, -2}\t{1, 5, 2}", "entity \"lamp\""}));
   EXPECT_TRUE(registry.has<Light>(parent));
   EXPECT_EQ(registry.get<Name>(child).text, "bulb");
   EXPECT_CONTAINS(error_of("world.model('content/none.glb')"), "no such model");
   EXPECT_CONTAINS(error_of("world.model('content/none.glb')"), "test.lua:1:");
-  EXPECT_CONTAINS(error_of("local city = world.model('content/city.glb') city[1]:destroy() city:bounds()"), "nothing to see");
+  EXPECT_CONTAINS(error_of("local city = world.model('content/city.glb') city[1]:destroy() city:bounds()"),
+                  "nothing to see");
 }
 
 TEST_F(World, WithoutServicesTheirFunctionsAreErrors) {
@@ -184,7 +202,8 @@ TEST_F(World, CinematicsDeclareThemselves) {
   EXPECT_EQ(host().cinematic().fps, 24.0);
   EXPECT_EQ(host().cinematic().size_px, glm::ivec2(640, 360));
   EXPECT_EQ(host().cinematic().render, "scripts/render/city.lua");
-  for (const char* bad : {"cinematic{fps=0}", "cinematic{fps='x'}", "cinematic{duration_s=-1}", "cinematic{duration_s=0/0}", "cinematic{size={0, 5}}", "cinematic{size={1.5, 5}}",
+  for (const char* bad : {"cinematic{fps=0}", "cinematic{fps='x'}", "cinematic{duration_s=-1}",
+                          "cinematic{duration_s=0/0}", "cinematic{size={0, 5}}", "cinematic{size={1.5, 5}}",
                           "cinematic{size=5}", "cinematic{render=5}", "cinematic{1}", "cinematic()"}) {
     EXPECT_CONTAINS(error_of(bad), "test.lua:1:");
   }
@@ -196,7 +215,9 @@ TEST_F(World, FilesAreListedForReload) {
   expect_ok("require('part') require('part')");
   error_of("require('broken')");
   const auto& files = host().files();
-  const auto has = [&](const char* name) { return std::find(files.begin(), files.end(), folder / name) != files.end(); };
+  const auto has = [&](const char* name) {
+    return std::find(files.begin(), files.end(), folder / name) != files.end();
+  };
   EXPECT_TRUE(has("test.lua") && has("part.lua") && has("broken.lua"));
 }
 
