@@ -301,6 +301,17 @@ TEST_F(GraphTest, PersistentResourcesKeepTheirContent) {
   EXPECT_EQ(seen.order.at(0), "cached anew");
 }
 
+TEST_F(GraphTest, APersistentResourceThatFollowsTheWindowIsFreshAtANewSize) {
+  load({{"resources", {{"map", {{"format", "r32f"}, {"persistent", true}}}}},
+        {"passes", {pass("cached", {{"map", "map"}})}},
+        {"output", "map"}});
+  run();
+  run();
+  EXPECT_EQ(seen.order.at(0), "cached kept");
+  EXPECT_EQ(run({}, 16, 8), 77.0f);
+  EXPECT_EQ(seen.order.at(0), "cached anew");
+}
+
 TEST_F(GraphTest, PersistentResourcesAccumulate) {
   load({{"resources", {{"sum", rgba16f({{"persistent", true}, {"clear", 0}})}}},
         {"passes", {pass("add", {{"target", "sum"}})}},
