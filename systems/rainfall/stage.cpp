@@ -36,6 +36,32 @@ PassOffer backdrop_offer(const StageSet& set) {
   return offer;
 }
 
+// A vertical occlusion map of 128 m about the camera: open, or a roof over half of it.
+PassOffer map_offer(const StageSet& set) {
+  PassOffer offer;
+  offer.name = "stage_map";
+  offer.meaning = "an occlusion map";
+  offer.slots = {{"occlusion_map", SlotAccess::write}};
+  const auto uniforms = std::make_shared<Buffer>();
+  offer.execute = [set, uniforms](PassContext& context) {
+    constexpr float side = 128.0f, top = 64.0f;
+    const Texture& map = context.texture("occlusion_map");
+    OcclusionUniforms u{};
+    u.map_from_relative = glm::mat4(0.0f);
+    u.map_from_relative[0][0] = u.map_from_relative[2][1] = 1.0f / side;
+    u.map_from_relative[1][2] = -1.0f;
+    u.map_from_relative[3] = {0.5f, 0.5f, top, 1.0f};
+    u.fall_texel = {0.0f, -1.0f, 0.0f, side / static_cast<float>(map.width)};
+    u.size_depth = {static_cast<float>(map.width), side, 0.05f, 0.0f};
+    upload(*uniforms, &u, sizeof u);
+    glBindBufferBase(GL_UNIFORM_BUFFER, OCCLUSION_UNIFORMS_BINDING, uniforms->id);
+    const float roof = set.roof_m > 0.0f ? 1.0f - (top - set.roof_m) / side : 0.0f, open = 0.0f;
+    glClearTexImage(map.id, 0, GL_DEPTH_COMPONENT, GL_FLOAT, &open);
+    glClearTexSubImage(map.id, 0, 0, 0, 0, map.width / 2, map.height, 1, GL_DEPTH_COMPONENT, GL_FLOAT, &roof);
+  };
+  return offer;
+}
+
 PassOffer present_offer() {
   PassOffer offer;
   offer.name = "stage_present";
@@ -71,6 +97,7 @@ Result<std::unique_ptr<RainStage>> RainStage::make(bool software_gl, const Stage
 Result<void> RainStage::load() {
   std::vector<PassOffer> offers = rainfall_passes();
   offers.push_back(backdrop_offer(set_));
+  offers.push_back(map_offer(set_));
   offers.push_back(present_offer());
   graph_ = std::make_unique<Graph>(library_, std::move(offers));
   using Json = nlohmann::json;
@@ -84,6 +111,11 @@ Result<void> RainStage::load() {
     splat["depth"] = "depth";
   }
   table["passes"] = Json::array({backdrop});
+  if (set_.map) {
+    table["resources"]["map"] = {{"format", "depth32f"}, {"width", 1024}, {"height", 1024}};
+    table["passes"].push_back({{"pass", "stage_map"}, {"occlusion_map", "map"}});
+    splat["occlusion_map"] = "map";
+  }
   if (set_.draw_rain) {
     table["passes"].push_back({{"pass", "rain_cells"}});
     table["passes"].push_back(splat);
