@@ -45,15 +45,16 @@ void main() {
     for (int i = 0; i < AIRLIGHT_POINTS; ++i) {
       vec2 point = gauss_point(i);
       float eta = angles.x + angles.y * 0.5 * (1.0 + point.x);
-      float x = c + h * tan(eta);
+      float sine = sin(eta), cosine_eta = max(cos(eta), 1e-4);
+      float x = c + h * sine / cosine_eta;
       vec3 from_lamp = ray * x - lamp;
-      float cosine = dot(from_lamp, light.direction_kind.xyz) * inversesqrt(max(dot(from_lamp, from_lamp), 1e-6));
+      float cosine = dot(from_lamp, light.direction_kind.xyz) * cosine_eta / h;  // |from_lamp| = h / cos(eta)
       float strength = spot_attenuation(cosine, light.cone_shadow.x, light.cone_shadow.y);
       // Beyond frame.rain.y every drop is extinction; nearer, the drops draw themselves.
       float far_rain = max(x - frame.rain.y, 0.0);
       float scattering = frame.mist.x + frame.rain.z + (far_rain > 0.0 ? frame.rain.x : 0.0);
-      glow += point.y * airlight_at(eta, c, h, near_extinction, forward) * exp(-frame.rain.x * far_rain) *
-              scattering * strength;
+      glow += point.y * phase_hg(-sine, forward) * scattering * strength *
+              exp(-near_extinction * airlight_path(sine, cosine_eta, c, h) - frame.rain.x * far_rain);
     }
 #ifdef SHADOWS
     // The lamp's shadow where the ray passes nearest to it: no halo through a house.

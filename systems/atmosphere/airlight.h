@@ -64,11 +64,9 @@ AIRLIGHT_FN vec2 airlight_angles(float c, float h, float from, float to) {
   return vec2(atan(from - c, h), atan(h * (to - from), h * h + (from - c) * (to - c)));
 }
 
-// Phase times transmittance lamp -> mist -> eye at one angle. The lamp's light arrives along the ray's
-// c - x; the path is c + h (1 + sin eta) / cos eta.
-AIRLIGHT_FN float airlight_at(float eta, float c, float h, float extinction, float q) {
-  float s = sin(eta);
-  return phase_hg(-s, q) * exp(-extinction * max(c + h * (1.0f + s) / max(cos(eta), 1e-4f), 0.0f));
+// Metres lamp -> mist -> eye at one angle: x + h / cos(eta), with x = c + h tan(eta).
+AIRLIGHT_FN float airlight_path(float sine, float cosine, float c, float h) {
+  return max(c + h * (1.0f + sine) / max(cosine, 1e-4f), 0.0f);
 }
 
 // Radiance per candela of an even lamp over the stretch [from, to]. scattering in 1/m.
@@ -77,7 +75,9 @@ AIRLIGHT_FN float airlight(float c, float h, float from, float to, float scatter
   float sum = 0.0f;
   for (int i = 0; i < AIRLIGHT_POINTS; ++i) {
     vec2 point = gauss_point(i);
-    sum += point.y * airlight_at(angles.x + angles.y * 0.5f * (1.0f + point.x), c, h, extinction, q);
+    float eta = angles.x + angles.y * 0.5f * (1.0f + point.x);
+    float sine = sin(eta);  // minus the cosine of the scattering angle
+    sum += point.y * phase_hg(-sine, q) * exp(-extinction * airlight_path(sine, cos(eta), c, h));
   }
   return sum * 0.5f * angles.y * scattering / h;
 }

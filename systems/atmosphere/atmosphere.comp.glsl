@@ -1,9 +1,8 @@
 #version 450 core
-// What lies between the surfaces and the eye: extinction by mist and far rain, the mist's own light, and the sky
-// where nothing else is. Modifies colour in place.
+// What lies between surfaces and eye: extinction by mist and far rain, and the mist's own light. Modifies colour in
+// place.
 #include "systems/geometry/position.glsl"
 #include "systems/lighting/environment.glsl"
-#include "systems/sky.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(binding = 0) uniform sampler2D depth_map;
@@ -46,8 +45,7 @@ void main() {
                     frame.rain.x * max(distance_m - frame.rain.y, 0.0);
   float passes = exp(-thickness);
 
-  vec3 surface = depth > 0.0 ? imageLoad(colour, texel).rgb : sky_radiance(ray);
-  vec3 result = surface * passes;
+  vec3 result = imageLoad(colour, texel).rgb * passes;
   vec3 glow = frame.sky_horizon.rgb * (0.5 * frame.sky_zenith.w);
 #ifdef ENVIRONMENT
   float in_street = min(street_height_m / max(ray.y, 1e-3), distance_m);

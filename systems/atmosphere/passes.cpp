@@ -71,7 +71,7 @@ PassOffer airlight() {
 PassOffer atmosphere() {
   const std::vector<std::string> files{"systems/atmosphere/atmosphere.comp.glsl"};
   return {"atmosphere",
-          "the night sky, and what mist and far rain take from the picture and add to it",
+          "what mist and far rain take from the picture and add to it",
           {{"colour", SlotAccess::modify},
            {"depth", SlotAccess::read},
            {"airlight", SlotAccess::read, true},

@@ -1,12 +1,16 @@
 #include "systems/image/passes.hpp"
 
 #include <algorithm>
+#include <memory>
 #include <string>
 
+#include "engine/gpu/objects.hpp"
 #include "systems/frame.hpp"
 
 namespace petrichor {
 namespace {
+
+constexpr GLuint edges_binding = 7;
 
 glm::ivec2 level_size(const Texture& texture, int level) {
   return {std::max(texture.width >> level, 1), std::max(texture.height >> level, 1)};
@@ -72,15 +76,27 @@ PassOffer tonemap(std::string name, std::string meaning, std::string target, std
           [target](PassContext& context) { map_tones(context, target); }};
 }
 
-void antialias(PassContext& context) {
-  const Program& program = context.program("antialias");
-  program.use();
-  program.set("least_contrast", context.parameter("least_contrast"));
-  program.set("relative_contrast", context.parameter("relative_contrast"));
-  program.set("softening", context.parameter("softening"));
+void antialias(Buffer& edges, PassContext& context) {
+  const unsigned header[4] = {0, 1, 1, 0};
+  const std::size_t bytes = sizeof header + sizeof(unsigned) * static_cast<std::size_t>(context.width) * static_cast<std::size_t>(context.height);
+  if (edges.bytes < bytes) edges = make_buffer(bytes);
+  glNamedBufferSubData(edges.id, 0, sizeof header, header);
+  glBindBufferBase(GL_SHADER_STORAGE_BUFFER, edges_binding, edges.id);
   context.bind_texture(0, "display");
   context.bind_image(0, "picture", GL_WRITE_ONLY);
-  program.dispatch(context.width, context.height);
+  const auto use = [&](std::string_view name) -> const Program& {
+    const Program& program = context.program(name);
+    program.use();
+    for (const char* parameter : {"least_contrast", "relative_contrast", "softening"})
+      program.set(parameter, context.parameter(parameter));
+    return program;
+  };
+  use("find").dispatch(context.width, context.height);
+  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT);
+  use("smooth");
+  glBindBuffer(GL_DISPATCH_INDIRECT_BUFFER, edges.id);
+  glDispatchComputeIndirect(0);
+  glBindBuffer(GL_DISPATCH_INDIRECT_BUFFER, 0);
 }
 
 }  // namespace
@@ -101,9 +117,10 @@ std::vector<PassOffer> image_passes() {
                     "smooths edges and dithers to 8 bits",
                     {{"display", SlotAccess::read}, {"picture", SlotAccess::write}},
                     {{"least_contrast", 0.03}, {"relative_contrast", 0.12}, {"softening", 0.7}},
-                    {{"antialias", {{"systems/image/antialias.comp.glsl"}, {}}}},
+                    {{"find", {{"systems/image/antialias.comp.glsl"}, {"FIND"}}},
+                     {"smooth", {{"systems/image/antialias.comp.glsl"}, {}}}},
                     {},
-                    antialias});
+                    [edges = std::make_shared<Buffer>()](PassContext& context) { antialias(*edges, context); }});
   return offers;
 }
 

@@ -13,7 +13,14 @@
 
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(binding = 0, rgba32ui) uniform writeonly uimage2D light_lists;
+layout(std430, binding = TILES_BINDING) buffer Tiles { uint tiles[]; };
 uniform float threshold;
+uniform uint list_length;  // of each kind's list
+
+void append(ivec2 tile, uint kind) {
+  uint at = atomicAdd(tiles[kind * 4u], 1u);
+  tiles[uint(TILES_HEADER) + kind * list_length + at] = uint(tile.x) | uint(tile.y) << 16u;
+}
 
 // Cosine of max(0, angle - spread), from the cosines of both.
 float widened_cosine(float cosine, float spread_cosine) {
@@ -30,8 +37,9 @@ void main() {
 
   float near_depth = 0.0, far_depth = 1.0, smoothest = 1.0, count = 0.0;
   vec3 normal_sum = vec3(0.0);
-  for (int i = 0; i < LIGHT_TILE * LIGHT_TILE; ++i) {
-    ivec2 texel = min(first + ivec2(i % LIGHT_TILE, i / LIGHT_TILE), size - 1);
+  for (int i = 0; i < LIGHT_TILE * LIGHT_TILE / 2; ++i) {  // the black fields of the board
+    int row = i / (LIGHT_TILE / 2);
+    ivec2 texel = min(first + ivec2(2 * (i % (LIGHT_TILE / 2)) + (row & 1), row), size - 1);
     float depth = read_depth(texel);
     vec4 encoded = texelFetch(gbuffer_normal, texel, 0);
     float solid = depth > 0.0 ? 1.0 : 0.0;
@@ -43,6 +51,7 @@ void main() {
   }
   if (count == 0.0) {
     imageStore(light_lists, tile, uvec4(0u));
+    append(tile, uint(TILES_SKY));
     return;
   }
 
@@ -99,10 +108,10 @@ void main() {
     if (bound * illuminance * frame.lens.w > threshold) mask[i >> 5] |= 1u << (i & 31u);
   }
 #ifdef SHADOWS
-  // Five places of the tile ask the shadow maps, by their blurred half: it sees what lies between the places.
+  // Four places of the tile ask the shadow maps, by their blurred half: it sees what lies between the places.
   uint in_shadow = (1u << chosen.counts.y) - 1u, in_light = in_shadow;
-  for (int i = 0; i < 5; ++i) {
-    ivec2 texel = min(first + (i == 4 ? ivec2(4) : ivec2((i & 1) * 5 + 1, (i >> 1) * 5 + 1)), size - 1);
+  for (int i = 0; i < 4; ++i) {
+    ivec2 texel = min(first + ivec2((i & 1) * 5 + 1, (i >> 1) * 5 + 1), size - 1);
     float depth = read_depth(texel);
     if (depth <= 0.0) continue;
     vec3 place = relative_position(vec2(texel) + 0.5, depth);
@@ -118,6 +127,10 @@ void main() {
   }
   mask.x &= ~in_shadow;
   mask.w |= (in_light & mask.x) << 16;
+  uint asks = mask.x & ((1u << chosen.counts.y) - 1u) & ~in_light;
+#else
+  uint asks = 0u;
 #endif
   imageStore(light_lists, tile, mask);
+  append(tile, asks == 0u ? uint(TILES_LIT) : uint(TILES_SHADOWED));
 }

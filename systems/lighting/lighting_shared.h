@@ -14,6 +14,15 @@ namespace petrichor {
 #define CHOSEN_LIGHTS_BINDING 3  // uniform block (2 is the material's)
 #define LIGHT_TILE 8             // pixels per side of a tile
 
+// Tiles sorted by the work they need, so that none pays for what only another one needs. A storage buffer: three
+// indirect dispatch commands of 4 uints each, then for each kind a list of tiles, x in the lower 16 bits, y above.
+#define TILES_BINDING 7
+#define TILES_SKY 0      // no surface
+#define TILES_LIT 1      // no shadow map to ask
+#define TILES_SHADOWED 2
+#define TILES_KINDS 3
+#define TILES_HEADER 12  // uints before the lists
+
 // One octahedral map of a shadow-casting light is a square tile of the shadow atlas.
 #define SHADOW_TILES_PER_SIDE 4
 #define MAXIMUM_SHADOWS 16

@@ -26,6 +26,16 @@ std::span<const int> shadow_slots(const LightingState& state, const PassContext&
   return context.has("shadow_atlas") ? std::span<const int>(state.shadows.slots) : std::span<const int>();
 }
 
+// Empty lists with room for all tiles in each.
+void start_tiles(LightingState& state, unsigned tiles) {
+  const std::size_t bytes = (TILES_HEADER + std::size_t{TILES_KINDS} * tiles) * sizeof(unsigned);
+  if (state.tiles.bytes < bytes) state.tiles = make_buffer(bytes);
+  state.list_length = tiles;
+  const unsigned header[TILES_HEADER] = {0, 1, 1, 0, 0, 1, 1, 0, 0, 1, 1, 0};
+  glNamedBufferSubData(state.tiles.id, 0, sizeof header, header);
+  glBindBufferBase(GL_SHADER_STORAGE_BUFFER, TILES_BINDING, state.tiles.id);
+}
+
 PassOffer shadow_maps(State state) {
   return {"shadow_maps",
           "octahedral variance shadow maps of the lights that cast shadows, kept while nothing moves",
@@ -92,14 +102,42 @@ PassOffer light_lists(State state) {
             context.bind_texture(0, "depth");
             context.bind_texture(2, "normal");
             context.bind_image(0, "light_lists", GL_WRITE_ONLY);
-            lists.dispatch((context.width + LIGHT_TILE - 1) / LIGHT_TILE, (context.height + LIGHT_TILE - 1) / LIGHT_TILE);
+            const int across = (context.width + LIGHT_TILE - 1) / LIGHT_TILE;
+            const int down = (context.height + LIGHT_TILE - 1) / LIGHT_TILE;
+            start_tiles(*state, static_cast<unsigned>(across * down));
+            lists.set("list_length", state->list_length);
+            lists.dispatch(across, down);
           }};
 }
 
-PassOffer shade() {
+// One kind of tiles after the other, each by the shader that does no more than they need.
+void shade_tiles(const LightingState& state, PassContext& context) {
+  const bool shadows = context.has("shadow_atlas"), environment = context.has("environment");
+  bind_gbuffer(context);
+  context.bind_texture(light_lists_unit, "light_lists");
+  if (shadows) context.bind_texture(shadow_unit, "shadow_atlas");
+  if (environment) context.bind_texture(environment_unit, "environment");
+  context.bind_image(0, "colour", GL_WRITE_ONLY);
+  glBindBufferBase(GL_SHADER_STORAGE_BUFFER, TILES_BINDING, state.tiles.id);
+  glBindBuffer(GL_DISPATCH_INDIRECT_BUFFER, state.tiles.id);
+  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT);
+  const auto shade = [&](unsigned kind, std::string_view program_name) {
+    const Program& program = context.program(program_name);
+    program.use();
+    program.set("diffuse_gain", context.parameter("diffuse_gain"));
+    program.set("list_start", TILES_HEADER + kind * state.list_length);
+    glDispatchComputeIndirect(static_cast<GLintptr>(kind * 4 * sizeof(unsigned)));
+  };
+  shade(TILES_SKY, "sky");
+  shade(TILES_LIT, environment ? "environment" : "plain");
+  if (shadows) shade(TILES_SHADOWED, environment ? "shadows_environment" : "shadows");
+  glBindBuffer(GL_DISPATCH_INDIRECT_BUFFER, 0);
+}
+
+PassOffer shade(State state) {
   const std::vector<std::string> files{"systems/lighting/shade.comp.glsl"};
   return {"shade",
-          "lamps, surroundings and own light on every surface, cd/m2",
+          "lamps, surroundings and own light on every surface, and the sky: cd/m2",
           {{"depth", SlotAccess::read},
            {"albedo", SlotAccess::read},
            {"normal", SlotAccess::read},
@@ -109,26 +147,13 @@ PassOffer shade() {
            {"environment", SlotAccess::read, true},
            {"colour", SlotAccess::write}},
           {{"diffuse_gain", 1.0}},
-          {{"plain", {files, {}}},
+          {{"sky", {files, {"SKY"}}},
+           {"plain", {files, {}}},
            {"shadows", {files, {"SHADOWS"}}},
            {"environment", {files, {"ENVIRONMENT"}}},
            {"shadows_environment", {files, {"SHADOWS", "ENVIRONMENT"}}}},
           {},
-          [](PassContext& context) {
-            const bool shadows = context.has("shadow_atlas"), environment = context.has("environment");
-            const Program& program = context.program(shadows && environment ? "shadows_environment"
-                                                     : shadows              ? "shadows"
-                                                     : environment          ? "environment"
-                                                                            : "plain");
-            program.use();
-            program.set("diffuse_gain", context.parameter("diffuse_gain"));
-            bind_gbuffer(context);
-            context.bind_texture(light_lists_unit, "light_lists");
-            if (shadows) context.bind_texture(shadow_unit, "shadow_atlas");
-            if (environment) context.bind_texture(environment_unit, "environment");
-            context.bind_image(0, "colour", GL_WRITE_ONLY);
-            program.dispatch(context.width, context.height);
-          }};
+          [state](PassContext& context) { shade_tiles(*state, context); }};
 }
 
 }  // namespace
@@ -139,7 +164,7 @@ std::vector<PassOffer> lighting_passes(std::shared_ptr<LightingState> state) {
   offers.push_back(shadow_maps(state));
   offers.push_back(environment(state));
   offers.push_back(light_lists(state));
-  offers.push_back(shade());
+  offers.push_back(shade(state));
   return offers;
 }
 

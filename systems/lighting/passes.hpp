@@ -15,7 +15,7 @@ struct LightingState;  // systems/lighting/state.hpp
 // environment:  environment (rgba16f 448x65): the captured surroundings, read by environment.glsl.
 // light_lists:  light_lists (rgba32ui, scale 1/8): the lights that each tile of pixels sees; also binds the block of
 //               chosen lights (CHOSEN_LIGHTS_BINDING) for the passes after it.
-// shade:        colour (rgba16f), cd/m2: every surface lit. Texels of the sky are 0.
+// shade:        colour (rgba16f), cd/m2: every surface lit, and the sky where there is none.
 // The state is for tests; leave it empty.
 std::vector<PassOffer> lighting_passes(std::shared_ptr<LightingState> state = {});
 

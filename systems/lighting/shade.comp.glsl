@@ -1,6 +1,6 @@
 #version 450 core
 // Lights every surface of the G-buffer: chosen lamps with GGX and Lambert, the captured environment, and what the
-// surface itself emits. Writes radiance in cd/m2. The loops run over the masks of light_lists: first the lamps
+// surface itself emits; the sky where there is none. Writes radiance in cd/m2. The loops run over the masks of light_lists: first the lamps
 // with shadow maps, then the rest, because software OpenGL executes both sides of a branch.
 #define GBUFFER_FIRST_UNIT 0
 #include "systems/geometry/gbuffer.glsl"
@@ -8,11 +8,27 @@
 #include "systems/lighting/environment.glsl"
 #include "systems/lighting/lighting_shared.h"
 #include "systems/lighting/shadow.glsl"
+#include "systems/sky.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(binding = 4) uniform usampler2D light_lists;
 layout(binding = 0, rgba16f) uniform writeonly image2D colour;
 uniform float diffuse_gain;  // multiplies the environment's diffuse light
+layout(std430, binding = TILES_BINDING) readonly buffer Tiles { uint tiles[]; };
+uniform uint list_start;  // of this dispatch's kind of tiles; one tile a work group
+
+ivec2 own_texel() {
+  uint tile = tiles[list_start + gl_WorkGroupID.x];
+  return ivec2(tile & 0xffffu, tile >> 16u) * LIGHT_TILE + ivec2(gl_LocalInvocationID.xy);
+}
+
+#ifdef SKY
+void main() {
+  ivec2 texel = own_texel();
+  if (any(greaterThanEqual(texel, ivec2(frame.size.xy)))) return;
+  imageStore(colour, texel, vec4(sky_radiance(view_ray(vec2(texel) + 0.5)), 1.0));
+}
+#else
 
 struct Facing {  // what a pixel needs for every light
   vec3 place;
@@ -53,7 +69,7 @@ void add_light(LightGpu light, Facing at, float extinction, float passes, inout 
 }
 
 void main() {
-  ivec2 texel = ivec2(gl_GlobalInvocationID.xy);
+  ivec2 texel = own_texel();
   if (any(greaterThanEqual(texel, ivec2(frame.size.xy)))) return;
   float depth = read_depth(texel);
   Surface surface = read_surface(texel);
@@ -73,10 +89,11 @@ void main() {
   float extinction = frame.mist.x + frame.rain.z;
   vec3 irradiance = vec3(0.0), specular = vec3(0.0);
   uvec4 mask = depth > 0.0 ? texelFetch(light_lists, texel / LIGHT_TILE, 0) : uvec4(0u);
-#ifdef SHADOWS
-  uint casters = mask.x & ((1u << chosen.counts.y) - 1u) & ~(mask.w >> 16);
-  mask.x &= ~casters;
+  uint in_light = mask.w >> 16;
   mask.w &= 0xffffu;
+#ifdef SHADOWS
+  uint casters = mask.x & ((1u << chosen.counts.y) - 1u) & ~in_light;
+  mask.x &= ~casters;
   float bias_m = shadow_bias_m(at.place);
   while (casters != 0u) {
     int i = findLSB(casters);
@@ -108,5 +125,6 @@ void main() {
   radiance += (diffuse * environment_diffuse(at.normal) * surface.occlusion * diffuse_gain +
                reflected * environment_radiance(at.mirror, surface.roughness) * open) * frame.sky_zenith.w;
 #endif
-  imageStore(colour, texel, vec4(depth > 0.0 ? radiance : vec3(0.0), 1.0));
+  imageStore(colour, texel, vec4(depth > 0.0 ? radiance : sky_radiance(-at.view), 1.0));
 }
+#endif
