@@ -13,9 +13,9 @@ struct Atlas {
   Picture emission;  // sRGB; multiplied by the material's emissive strength
 };
 
-inline constexpr float pane_strength_cd_m2 = 140.0f;
-inline constexpr float shopfront_strength_cd_m2 = 120.0f;
-inline constexpr float sign_strength_cd_m2 = 260.0f;
+inline constexpr float pane_strength_cd_m2 = 75.0f;
+inline constexpr float shopfront_strength_cd_m2 = 55.0f;
+inline constexpr float sign_strength_cd_m2 = 120.0f;
 
 // 4 x 4 windows: 0..11 lit, 12..15 dark with curtains.
 inline constexpr int lit_panes = 12;

@@ -24,8 +24,8 @@ void add_marks(Scene& scene) {
   const int parent = scene.group("marks");
   view(scene, parent, "view_crossing", {-1.3f, 1.5f, 25.0f}, {1.2f, 3.0f, -10.0f}, 46.0f);
   view(scene, parent, "view_toyshop", {1.2f, 1.55f, 2.6f}, {9.6f, 2.6f, -7.8f}, 52.0f);
-  view(scene, parent, "view_under_awning", {10.2f, 1.6f, -5.55f}, {-6.0f, 2.0f, 9.0f}, 62.0f);
-  view(scene, parent, "view_roof", {-58.0f, 18.0f, 3.0f}, {10.0f, 3.0f, -6.0f}, 50.0f);
+  view(scene, parent, "view_under_awning", {15.4f, 1.6f, -6.05f}, {-2.0f, 2.1f, 3.4f}, 60.0f);
+  view(scene, parent, "view_roof", {-12.4f, 16.2f, 10.6f}, {9.0f, 6.0f, -10.0f}, 56.0f);
   view(scene, parent, "view_lane", {30.0f, 1.55f, 1.2f}, {-20.0f, 3.4f, -1.5f}, 48.0f);
   Node start;
   start.name = "walker_start";

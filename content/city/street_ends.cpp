@@ -4,6 +4,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "content/city/atlases.hpp"
+#include "content/city/dice.hpp"
 #include "content/city/facade.hpp"
 #include "content/city/furniture.hpp"
 #include "content/city/plan.hpp"
@@ -94,22 +95,62 @@ void tower(Builder& b) {
     }
     for (int k = 0; k < 4; ++k) s.box(trim, {-r + 0.3f + 2.5f * static_cast<float>(k), 33.8f, r - 0.1f}, {-r + 1.4f + 2.5f * static_cast<float>(k), 35.2f, r + 0.3f}, face_no_bottom);
     // Spire: eight sides, each pair of faces over one side of the tower.
-    for (float h : {-1.0f, 1.0f}) {
-      const float a = 0.4142f * (r - 0.3f) * h;
-      const glm::vec3 top(0, 58.0f, 0), p(a, 34.0f, r - 0.3f), q(h > 0 ? a : -a, 34.0f, r - 0.3f);
-      if (h > 0) s.triangle(slate, {-a, 34.0f, r - 0.3f}, q, top);
-      else s.triangle(slate, {-a, 34.0f, r - 0.3f}, {r - 0.3f, 34.0f, -a}, top);
-      (void)p;
-    }
+    const float e = r - 0.3f;
+    const float a = 0.4142f * e;
+    const glm::vec3 top(0, 58.0f, 0);
+    s.triangle(slate, {-a, 34.0f, e}, {a, 34.0f, e}, top);
+    s.triangle(slate, {a, 34.0f, e}, {e, 34.0f, a}, top);
   }
   b.cylinder(plain({0.6f, 0.4f, 0.15f}, Finish::brass), {0, 57.5f, 0}, {0, 60.5f, 0}, 0.09f, 0.04f, 6);
   sphere(b, plain({0.6f, 0.4f, 0.15f}, Finish::brass), {0, 59.0f, 0}, glm::vec3(0.3f), 8, 5);
+}
+
+// The rest of the town as roofs against the sky, and the yards behind the houses.
+void backdrop(Scene& scene, int parent) {
+  Dice dice{909};
+  for (int quarter = 0; quarter < 4; ++quarter) {
+    Mesh mesh;
+    mesh.name = "far_town_" + std::to_string(quarter);
+    Builder b(mesh);
+    const float fx = (quarter & 1) ? 1.0f : -1.0f;
+    const float fz = (quarter & 2) ? 1.0f : -1.0f;
+    const glm::vec3 lo(std::min(fx * 17.0f, fx * 190.0f), -0.02f, std::min(fz * 15.0f, fz * 190.0f));
+    const glm::vec3 hi(std::max(fx * 17.0f, fx * 190.0f), -0.02f, std::max(fz * 15.0f, fz * 190.0f));
+    b.quad(plain(glm::vec3(0.04f), Finish::wet_stone), {lo.x, lo.y, hi.z}, {hi.x, lo.y, hi.z}, {hi.x, lo.y, lo.z}, {lo.x, lo.y, lo.z});
+    for (int k = 0; k < 26; ++k) {
+      const float ring = 82.0f + 26.0f * static_cast<float>(k % 4) + dice.between(0.0f, 10.0f);
+      const float t = 1.5707963f * (static_cast<float>(k) + dice.next()) / 26.0f;
+      const glm::vec3 at(fx * ring * std::cos(t), 0.0f, fz * ring * std::sin(t));
+      if (std::abs(at.x - 3.5f) < 22.0f && at.z < -60.0f) continue;  // the church's own square
+      Builder house = b.moved(at, dice.between(0.0f, 3.1f));
+      const float w = dice.between(6.0f, 11.0f), d = dice.between(5.0f, 7.0f), h = dice.between(11.0f, 19.0f), rise = dice.between(3.0f, 5.5f);
+      const Paint wall = tiling(Mat::stucco, glm::vec3(0.45f) * dice.between(0.6f, 1.0f));
+      const Paint tiles = tiling(Mat::tiles, glm::vec3(0.7f));
+      house.box(wall, {-w, 0, -d}, {w, h, d}, face_sides | face_front | face_back);
+      house.quad(tiles, {-w, h, d}, {w, h, d}, {w, h + rise, 0}, {-w, h + rise, 0});
+      house.quad(tiles, {w, h, -d}, {-w, h, -d}, {-w, h + rise, 0}, {w, h + rise, 0});
+      house.triangle(wall, {w, h, d}, {w, h, -d}, {w, h + rise, 0});
+      house.triangle(wall, {-w, h, -d}, {-w, h, d}, {-w, h + rise, 0});
+      for (int j = 0; j < 5; ++j) {  // a few windows awake
+        const float x = dice.between(-w + 1.0f, w - 2.0f), y = dice.between(0.55f * h, h - 2.5f);
+        for (float s : {-1.0f, 1.0f}) {
+          if (!dice.chance(0.5f)) continue;
+          const float z = s * (d + 0.02f);
+          const UvRect rect = pane_rect(dice.below(lit_panes));
+          if (s > 0) house.picture(Mat::panes, glm::vec3(1.0f), rect, {x, y, z}, {x + 1.1f, y, z}, {x + 1.1f, y + 1.7f, z}, {x, y + 1.7f, z});
+          else house.picture(Mat::panes, glm::vec3(1.0f), rect, {x + 1.1f, y, z}, {x, y, z}, {x, y + 1.7f, z}, {x + 1.1f, y + 1.7f, z});
+        }
+      }
+    }
+    add_node(scene, mesh.name, parent, scene.add_mesh(std::move(mesh)));
+  }
 }
 
 }  // namespace
 
 void add_street_ends(Scene& scene) {
   const int parent = scene.group("street_ends");
+  backdrop(scene, parent);
   const float depth = 11.0f;
   Mesh gate;
   gate.name = "gate_passage";
@@ -130,7 +171,7 @@ void add_street_ends(Scene& scene) {
   b.quad(plain({0.07f, 0.035f, 0.015f}, Finish::paint), {-1.3f, 0, 4.7f}, {1.3f, 0, 4.7f}, {1.3f, 4.2f, 4.7f}, {-1.3f, 4.2f, 4.7f});
   b.triangle(glow(Glow::clock), {-1.3f, 4.3f, 4.7f}, {1.3f, 4.3f, 4.7f}, {0, 6.0f, 4.7f});
   add_node(scene, church.name, parent, scene.add_mesh(std::move(church)));
-  add_light(scene, "church_flood", parent, {-1.5f, 1.2f, -78.0f}, {{1.0f, 0.78f, 0.50f}, 9000.0f, 70.0f, 10.0f, 24.0f, false, 0.2f}, {0.28f, 1.35f, -0.62f});
+  add_light(scene, "church_flood", parent, {-3.0f, 7.0f, -73.0f}, {{1.0f, 0.74f, 0.42f}, 26000.0f, 80.0f, 12.0f, 34.0f, false, 0.2f}, {6.5f, 26.0f, -14.4f});
   add_light(scene, "church_square_lamp", parent, {-7.0f, 4.6f, -82.0f}, {sodium_light, 420.0f, 26.0f, 0, 0, false, 0.12f});
 }
 

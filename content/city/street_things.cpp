@@ -186,7 +186,7 @@ void add_small_things(Scene& scene) {
   place("litter_bin", bin, 5.7f, 20.6f, at_kerb, -1.57f);
   place("litter_bin", bin, -5.7f, 12.2f, at_kerb, 1.57f);
   place("litter_bin", bin, -5.7f, -23.0f, at_kerb, 1.57f);
-  place("litter_bin", bin, 13.0f, -4.7f, at_kerb, 0.0f);
+  place("litter_bin", bin, 19.6f, -4.7f, at_kerb, 0.0f);
   place("litter_bin", bin, 5.7f, -27.5f, at_kerb, -1.57f);
   const int bench = scene.add_mesh(bench_mesh());
   place("bench", bench, -7.4f, 22.0f, inner, 1.5707963f);

@@ -56,7 +56,7 @@ void add_vehicles(Scene& scene) {
   };
   const std::array<Kind, 6> kinds{{kind("saloon_green", saloon, {0.02f, 0.07f, 0.05f}), kind("saloon_cream", saloon, {0.42f, 0.37f, 0.27f}),
                                    kind("small_red", small, {0.26f, 0.015f, 0.015f}), kind("small_blue", small, {0.05f, 0.13f, 0.22f}),
-                                   kind("van_grey", van, {0.12f, 0.13f, 0.14f}), kind("saloon_black", saloon, {0.008f, 0.008f, 0.009f})}};
+                                   kind("van_grey", van, {0.12f, 0.13f, 0.14f}), kind("saloon_plum", saloon, {0.055f, 0.012f, 0.022f})}};
   const Kind taxi_on = kind("taxi_lit", saloon, {0.012f, 0.012f, 0.014f}, true, CarSign::taxi);
   const Kind small_on = kind("small_lit", small, {0.30f, 0.20f, 0.05f}, true);
 
