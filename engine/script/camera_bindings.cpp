@@ -51,7 +51,7 @@ CameraPath check_path(lua_State* state, int index, double start_s) {
   CameraPath path;
   const auto count = static_cast<lua_Integer>(lua_rawlen(state, index));
   if (count < 1) raise(state, "camera.path: give keys, {time_s=0, position={...}, target={...}}");
-  charge(state, static_cast<std::uint64_t>(count) * 20);
+  charge(state, static_cast<std::uint64_t>(count) * 200);
   double last_s = -1.0;
   for (lua_Integer i = 1; i <= count; ++i) {
     const std::string place = fmt::format("camera.path, key {}", i);

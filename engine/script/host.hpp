@@ -34,6 +34,7 @@ struct ScriptHost::Impl {
   Cinematic cinematic;
   FieldPlace name, position, orientation, field_of_view, camera_active;
   std::vector<script::Pin> pins;
+  std::size_t models_loaded = 0;
   Result<void> opened;  // whether the bindings could be set up within the memory cap
 };
 
@@ -43,6 +44,8 @@ ScriptHost::Impl& host_of(lua_State*);
 
 // All writes of scripts go through here: a pinned field takes its pin instead. The component must exist.
 Result<void> set_field(ScriptHost::Impl&, const Schema&, const Field&, void* component, const nlohmann::json& value);
+// Brings the pinned fields of an entity that scripts did not make to their pins.
+void apply_pins(ScriptHost::Impl&, Entity);
 // Adds the component, or finds it, with pinned fields in place.
 void* add_component(ScriptHost::Impl&, const Schema&, Entity);
 

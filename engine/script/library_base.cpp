@@ -92,7 +92,7 @@ int print(lua_State* state) {
     line.append(text, std::min<std::size_t>(length, 10'000));
     lua_pop(state, 1);
   }
-  charge(state, 1000);
+  charge(state, 1000 + line.size());
   if (sandbox.print)
     sandbox.print(line);
   else

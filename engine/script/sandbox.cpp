@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <fstream>
 #include <lua.hpp>
@@ -134,7 +135,7 @@ Result<void> Sandbox::protect(const std::function<void(lua_State*)>& body) {
 }
 
 Result<void> Sandbox::load(lua_State* to, const std::filesystem::path& file) {
-  files.push_back(file);
+  if (std::find(files.begin(), files.end(), file) == files.end()) files.push_back(file);
   const std::string name = file.generic_string();
   std::error_code code;
   if (!std::filesystem::exists(file, code)) return failure(fmt::format("{}: no such script", name));

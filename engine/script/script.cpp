@@ -14,6 +14,7 @@ namespace petrichor {
 namespace script {
 
 struct Pin {
+  const Schema* schema;
   const Field* field;
   nlohmann::json value;
 };
@@ -33,12 +34,15 @@ Result<void> set_field(ScriptHost::Impl& host, const Schema& schema, const Field
 void* add_component(ScriptHost::Impl& host, const Schema& schema, Entity entity) {
   if (void* found = schema.find(host.registry, entity)) return found;
   void* component = schema.emplace(host.registry, entity);
-  for (const Pin& pin : host.pins) {
-    for (const Field& field : schema.fields) {
-      if (pin.field == &field) (void)write_field(schema, field, component, pin.value);  // was checked by pin()
-    }
-  }
+  apply_pins(host, entity);
   return component;
+}
+
+void apply_pins(ScriptHost::Impl& host, Entity entity) {
+  for (const Pin& pin : host.pins) {
+    void* component = pin.schema->find(host.registry, entity);
+    if (component) (void)write_field(*pin.schema, *pin.field, component, pin.value);  // was checked by pin()
+  }
 }
 
 namespace {
@@ -129,7 +133,7 @@ Result<void> ScriptHost::pin(std::string_view component, std::string_view field,
       return checked;
   }
   std::erase_if(self.pins, [&](const script::Pin& p) { return p.field == found; });
-  self.pins.push_back(script::Pin{found, value});
+  self.pins.push_back(script::Pin{schema, found, value});
   for (const Entity entity : schema->entities(self.registry)) {
     if (const auto set = write_field(*schema, *found, schema->find(self.registry, entity), value); !set) return set;
   }

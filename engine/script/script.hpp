@@ -29,6 +29,11 @@ struct ScriptLimits {
   std::uint64_t load_instructions = 200'000'000;  // run_file, read_table
   std::uint64_t step_instructions = 50'000'000;   // one advance
   double wall_s = 20.0;                           // one call of any of them
+  // What lives outside Lua's own memory.
+  std::size_t entities = 250'000;
+  std::size_t models = 1000;
+  std::size_t text_bytes = 4096;  // of one text field
+  std::size_t handlers = 10'000;
 };
 
 // What scripts can ask for that is not a component. A function that is not set is an error when called.

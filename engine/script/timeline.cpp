@@ -162,6 +162,8 @@ int Timeline::run_track(lua_State* state, Track track) {
     std::erase_if(other.targets, [&](const Target& t) {
       return std::find(track.targets.begin(), track.targets.end(), t) != track.targets.end();
     });
+    // Its task still waits for its end, but what it would have written need not be kept.
+    if (other.targets.empty()) other.apply = [](double, const std::vector<Target>&) -> Result<void> { return {}; };
   }
   track.task = current_;
   track.start_s = now_s_;

@@ -56,6 +56,7 @@ class Timeline {
   int run_track(lua_State*, Track);
 
   std::uint64_t add_handler(lua_State*, const std::string& event);  // the function on the stack top
+  std::size_t handlers() const { return handlers_.size(); }
   void remove_handler(lua_State*, std::uint64_t handler);
   // Wakes who listens, with the `arguments` values on the stack top; pops them. Returns how many listen.
   int emit(lua_State*, const std::string& event, int arguments);

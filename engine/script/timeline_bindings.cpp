@@ -59,6 +59,7 @@ double check_seconds(lua_State* state, int index, const char* function) {
 std::string check_event(lua_State* state, int index) {
   std::size_t length = 0;
   const char* text = luaL_checklstring(state, index, &length);
+  luaL_argcheck(state, length <= 256, index, "the name of an event has at most 256 bytes");
   return std::string(text, length);
 }
 
@@ -92,6 +93,10 @@ int on_event(lua_State* state) {
   luaL_checktype(state, 2, LUA_TFUNCTION);
   lua_settop(state, 2);
   charge(state, 100);
+  if (timeline_of(state).handlers() >= host_of(state).options.limits.handlers) {
+    raise(state, fmt::format("on: there are {} handlers already; end those that are done with :off()",
+                             timeline_of(state).handlers()));
+  }
   const std::uint64_t id = timeline_of(state).add_handler(state, event);
   lua_createtable(state, 1, 0);
   lua_pushinteger(state, static_cast<lua_Integer>(id));
@@ -191,7 +196,6 @@ int tween(lua_State* state) {
   track.targets = {Target{box.entity, field}};
   track.apply = [&host, &schema, field, from, to, start_s, end_s = track.end_s, duration_s, curve = *easing](
                     double time_s, const std::vector<Target>& targets) -> Result<void> {
-    if (targets.empty()) return {};  // another tween has taken the field over
     const double progress = time_s >= end_s ? 1.0 : (time_s - start_s) / duration_s;
     return write_target(host, schema, targets[0], blend(*field, from, to, ease(curve, progress)));
   };

@@ -220,6 +220,8 @@ json check_field_value(lua_State* state, int index, const Schema& schema, const 
     case LUA_TSTRING: {
       std::size_t length = 0;
       const char* text = lua_tolstring(state, index, &length);
+      const std::size_t most = sandbox_of(state).limits.text_bytes;
+      if (length > most) raise(state, fmt::format("{}: a text of {} bytes; at most {} fit", what, length, most));
       if (!is_utf8(std::string_view(text, length))) raise(state, what + ": the text is not UTF-8");
       return std::string(text, length);
     }

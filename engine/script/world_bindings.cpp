@@ -42,6 +42,10 @@ int spawn(lua_State* state) {
     raise(state, "world.spawn: entities cannot have a parent here");
   std::sort(wanted.begin(), wanted.end());
   charge(state, 100);
+  if (host.registry.size() >= host.options.limits.entities) {
+    raise(state, fmt::format("world.spawn: there are {} entities already, as many as a script may make",
+                             host.registry.size()));
+  }
   const Entity entity = host.registry.create();
   try {
     for (const Schema* schema : wanted) {
@@ -65,8 +69,14 @@ int load_model(lua_State* state) {
   auto& host = host_of(state);
   const std::string path(text_argument(state, 1));
   if (!host.options.services.load_model) raise(state, "world.model: models cannot be loaded here");
+  if (host.models_loaded >= host.options.limits.models) {
+    raise(state,
+          fmt::format("world.model: {} models were loaded already, as many as a script may", host.models_loaded));
+  }
   const auto loaded = host.options.services.load_model(path);
   if (!loaded) raise(state, loaded.error().message);
+  ++host.models_loaded;
+  for (const Entity entity : *loaded) apply_pins(host, entity);
   charge(state, 10 * loaded->size());
   lua_createtable(state, static_cast<int>(loaded->size()), 0);
   for (std::size_t i = 0; i < loaded->size(); ++i) {
@@ -122,7 +132,9 @@ int each_in_world(lua_State* state) {
 int count_in_world(lua_State* state) {
   auto& host = host_of(state);
   const Schema& schema = check_schema(state, text_argument(state, 1));
-  lua_pushinteger(state, static_cast<lua_Integer>(schema.entities(host.registry).size()));
+  const auto entities = schema.entities(host.registry);
+  charge(state, entities.size());
+  lua_pushinteger(state, static_cast<lua_Integer>(entities.size()));
   return 1;
 }
 

@@ -311,6 +311,14 @@ TEST_F(TimelineTest, PinnedFieldsHold) {
   EXPECT_FALSE(host().pin("emitter", "rain", 1));
   EXPECT_FALSE(host().pin("rain", "rain", 1));
   expect_ok("assert(world.spawn{emitter={}}.emitter.rain_mm_per_hour == 33)");
+  made.reset();
+  options.services.load_model = [&](const std::filesystem::path&) {
+    const Entity entity = registry.create();
+    registry.emplace<Emitter>(entity).rain_mm_per_hour = 99.0f;
+    return std::vector<Entity>{entity};
+  };
+  ASSERT_TRUE(host().pin("emitter", "rain_mm_per_hour", 5));
+  expect_ok("assert(world.model('rain.glb')[1].emitter.rain_mm_per_hour == 5)");
 }
 
 }  // namespace

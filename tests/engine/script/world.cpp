@@ -227,5 +227,19 @@ TEST_F(World, ArgumentsReachTheScript) {
   EXPECT_EQ(printed.back(), "a b.glb\tnil");
 }
 
+TEST_F(World, WhatLivesOutsideLuaHasCaps) {
+  options.limits.entities = 1000;
+  options.limits.handlers = 100;
+  options.limits.models = 3;
+  options.services.load_model = [](const std::filesystem::path&) { return std::vector<Entity>{}; };
+  EXPECT_CONTAINS(error_of("while true do world.spawn{} end"), "1000 entities");
+  EXPECT_EQ(registry.size(), 1000u);
+  EXPECT_CONTAINS(error_of("while true do on('x', print) end"), "handlers");
+  EXPECT_CONTAINS(error_of("while true do world.model('a.glb') end"), "models");
+  registry.clear();
+  EXPECT_CONTAINS(error_of("world.spawn{name=('x'):rep(5000)}"), "5000 bytes");
+  EXPECT_CONTAINS(error_of("emit(('x'):rep(5000))"), "256");
+}
+
 }  // namespace
 }  // namespace petrichor
