@@ -34,6 +34,8 @@ inline std::string base64(const Bytes& bytes) {
 }
 
 inline void write_file(const std::filesystem::path& file, const Bytes& bytes) {
+  std::error_code ignored;
+  std::filesystem::remove(file, ignored);  // ext4 waits for the disk where a file is written over
   std::ofstream(file, std::ios::binary)
       .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
 }
