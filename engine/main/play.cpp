@@ -9,6 +9,7 @@
 
 #include "components/components.hpp"
 #include "engine/core/log.hpp"
+#include "engine/core/paths.hpp"
 #include "engine/main/commands.hpp"
 #include "engine/main/reload.hpp"
 #include "engine/main/renderer.hpp"
@@ -54,7 +55,11 @@ struct Reloader {
 
   void watch(const World& world, const Renderer& renderer) {
     scripts.watch(world.script_files());
-    frame.watch(renderer.script_files);
+    // A table that failed for an artist's shader is tried again when the shader changes.
+    std::vector<std::filesystem::path> files = renderer.script_files;
+    for (const std::string& name : renderer.graph->files())
+      if (const auto file = find_data(name)) files.push_back(*file);
+    frame.watch(files);
   }
 
   void check(const PlayOptions& options, std::unique_ptr<World>& world, Renderer& renderer, double& time_s, InterfaceState& interface) {

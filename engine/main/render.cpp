@@ -87,20 +87,16 @@ Result<void> render(const RenderOptions& options) {
     if (!picture) return tl::unexpected(picture.error());
     if (want_stats) {
       glFinish();
-      const bool first = number == job->frames.begin;
-      if (first) stats.start_to_first_frame_s = milliseconds_since(program_start) / 1000.0;
+      const std::int64_t done = number - job->frames.begin;
+      if (done == 0) stats.start_to_first_frame_s = milliseconds_since(program_start) / 1000.0;
       // The first frame compiles shaders and fills caches: it counts only where it is the only one.
-      if (!first || job->frames.end - job->frames.begin == 1) stats.frame_ms.push_back(milliseconds_since(start));
-      if (renderer.device.software) {
-        // Passes are timed on a second drawing of the same frame, so that their glFinishes do not cost the first.
-        if (number % 8 == 0 || first) {
-          if (auto again = draw(renderer, frame, true); !again) return tl::unexpected(again.error());
-          if (!first || job->frames.end - job->frames.begin == 1) stats.add(renderer.timer->collect());
-          else renderer.timer->collect();
-        }
-      } else {
-        stats.add(renderer.timer->collect());
-      }
+      const bool counts = done > 0 || job->frames.end - job->frames.begin == 1;
+      if (counts) stats.frame_ms.push_back(milliseconds_since(start));
+      // On software OpenGL passes are timed on a second drawing of the same frame, so that the glFinishes between
+      // them do not cost the first; every eighth frame will do.
+      if (renderer.device.software && counts && done % 8 <= 1)
+        if (auto again = draw(renderer, frame, true); !again) return tl::unexpected(again.error());
+      if (auto timings = renderer.timer->collect(); counts) stats.add(timings);
       drops_drawn = rain_stats(frame).drops_drawn;
     }
     Picture recorded{job->width, job->height, {}, {}};

@@ -1,0 +1,18 @@
+#!/bin/sh
+# The GPU figures of docs/performance.md, on a machine that has only a driver: the built program and its libraries in
+# BUNDLE (bin, lib, run), the data beside it. One call, minutes: tests/bench/gpu_session.sh BUNDLE OUT
+set -u
+run="$1/run petrichor"
+out=$2
+export PETRICHOR_DATA="$1/share/petrichor"
+$run info | sed -n '/^Device/,/^$/p'
+for case in "38000000 1280x720" "5000000 1280x1024" "200000 1280x720"; do
+  set -- $case
+  $run bench rain --drops "$1" --size "$2" --frames 120
+done
+film=scripts/cinematics/first_rain.lua
+$run render $film --size 1280x720 --frames 200:320 --set emitter.rain_mm_per_hour=50 --out "$out/f%04d.png" --stats "$out/downpour.json"
+$run render $film --size 1280x720 --frames 200:320 --set emitter.rain_mm_per_hour=0 --out "$out/d%04d.png" --stats "$out/dry.json"
+for stats in downpour dry; do echo "$stats"; cat "$out/$stats.json"; done
+rm -f "$out"/f02[1-9]*.png "$out"/f03*.png "$out"/d02[1-9]*.png "$out"/d03*.png "$out"/f020[1-9].png "$out"/d020[1-9].png
+for rate in 0.5 10 100; do $run measure rain --rate $rate; done
