@@ -51,7 +51,7 @@ std::uint32_t Builder::put(Primitive& out, const Paint& paint, glm::vec3 positio
   v.position_m = glm::vec3(frame_ * glm::vec4(position, 1.0f));
   v.normal = glm::normalize(turn_ * normal);
   v.uv = uses_palette(paint.mat) ? paint.uv : (uv_m + paint.uv) / texture_metres(paint.mat) * glm::vec2(1, -1);
-  v.colour = paint.colour;
+  v.colour = glm::clamp(paint.colour, 0.0f, 1.0f);  // an albedo
   out.vertices.push_back(v);
   return static_cast<std::uint32_t>(out.vertices.size()) - 1;
 }

@@ -22,7 +22,7 @@ Vertex ground_vertex(const StandingWater& water, glm::vec2 p, glm::vec2 uv, glm:
   const float dz = carriageway_height_m(p.x, p.y + e) - carriageway_height_m(p.x, p.y - e);
   v.normal = glm::normalize(glm::vec3(-dx, 2.0f * e, -dz));
   v.uv = uv;
-  v.colour = tint;
+  v.colour = glm::min(tint, glm::vec3(1.0f));
   v.puddle_depth_m = std::max(0.0f, water.depth_at(p.x, p.y));
   return v;
 }
@@ -72,7 +72,7 @@ void add_main_street(Scene& scene, const StandingWater& water, int parent) {
         return ground_vertex(water, {x, z}, uv, street_tint(x, z));
       });
     }
-    add_node(scene, mesh.name, parent, scene.add_mesh(std::move(mesh)));
+    add_mesh_node(scene, parent, std::move(mesh));
   }
 }
 
@@ -103,7 +103,7 @@ void add_lane(Scene& scene, const StandingWater& water, int parent) {
           });
         }
       }
-      add_node(scene, mesh.name, parent, scene.add_mesh(std::move(mesh)));
+      add_mesh_node(scene, parent, std::move(mesh));
     }
   }
 }
@@ -176,7 +176,7 @@ void add_pavement(Scene& scene, int sx, int sz, int parent) {
       face(stone, point(s.kerb, kerb_m - 0.03f), point(t.kerb, kerb_m - 0.03f), point(tc, kerb_m), point(sc, kerb_m));
       face(stone, point(s.kerb, -0.12f), point(t.kerb, -0.12f), point(t.kerb, kerb_m - 0.03f), point(s.kerb, kerb_m - 0.03f));
     }
-    add_node(scene, mesh.name, parent, scene.add_mesh(std::move(mesh)));
+    add_mesh_node(scene, parent, std::move(mesh));
   }
 }
 
@@ -187,7 +187,7 @@ void paint_on_road(Mesh& mesh, glm::vec2 low, glm::vec2 high, float cell_m, glm:
     v.position_m = {x, carriageway_height_m(x, z) + 0.006f, z};
     v.normal = {0.0f, 1.0f, 0.0f};
     v.uv = glm::vec2(x, z) * 0.37f;
-    v.colour = tint;
+    v.colour = glm::min(tint, glm::vec3(1.0f));
     return v;
   });
 }
@@ -222,7 +222,7 @@ void add_markings(Scene& scene, int parent) {
       }
     }
   }
-  add_node(scene, mesh.name, parent, scene.add_mesh(std::move(mesh)));
+  add_mesh_node(scene, parent, std::move(mesh));
 }
 
 void add_ironwork(Scene& scene, const StandingWater& water, int parent) {
@@ -307,7 +307,7 @@ void add_water(Scene& scene, const StandingWater& water, int parent) {
           i = end;
         }
       }
-      if (!mesh.primitives.empty()) add_node(scene, mesh.name, parent, scene.add_mesh(std::move(mesh)));
+      if (!mesh.primitives.empty()) add_mesh_node(scene, parent, std::move(mesh));
     }
   }
 }

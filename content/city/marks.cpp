@@ -25,7 +25,7 @@ void add_marks(Scene& scene) {
   view(scene, parent, "view_crossing", {-1.3f, 1.5f, 25.0f}, {1.2f, 3.0f, -10.0f}, 46.0f);
   view(scene, parent, "view_toyshop", {1.2f, 1.55f, 2.6f}, {9.6f, 2.6f, -7.8f}, 52.0f);
   view(scene, parent, "view_under_awning", {15.4f, 1.6f, -6.05f}, {-2.0f, 2.1f, 3.4f}, 60.0f);
-  view(scene, parent, "view_roof", {-12.4f, 16.2f, 10.6f}, {9.0f, 6.0f, -10.0f}, 56.0f);
+  view(scene, parent, "view_roof", {-10.0f, 16.25f, 8.5f}, {7.0f, 4.5f, -7.5f}, 58.0f);
   view(scene, parent, "view_lane", {30.0f, 1.55f, 1.2f}, {-20.0f, 3.4f, -1.5f}, 48.0f);
   Node start;
   start.name = "walker_start";

@@ -17,6 +17,11 @@ int add_node(Scene& scene, const std::string& name, int parent, int mesh, const 
   return scene.add(std::move(node));
 }
 
+int add_mesh_node(Scene& scene, int parent, Mesh mesh, const glm::mat4& frame) {
+  const std::string name = mesh.name;
+  return add_node(scene, name, parent, scene.add_mesh(std::move(mesh)), frame);
+}
+
 int add_light(Scene& scene, const std::string& name, int parent, glm::vec3 position, const Lamp& lamp, glm::vec3 direction) {
   Light light;
   light.name = name;

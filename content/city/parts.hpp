@@ -11,6 +11,7 @@ namespace petrichor::city {
 
 // Helpers shared by the parts (parts.cpp).
 int add_node(Scene&, const std::string& name, int parent, int mesh, const glm::mat4& frame = glm::mat4(1.0f));
+int add_mesh_node(Scene&, int parent, Mesh, const glm::mat4& frame = glm::mat4(1.0f));  // a node named as its mesh
 // A light at a place; a spot shines along `direction`. Returns the node.
 struct Lamp {
   glm::vec3 colour{1.0f};

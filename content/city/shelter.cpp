@@ -62,7 +62,7 @@ void add_bus_shelter(Scene& scene) {
     if (side > 0) b.picture(Mat::signs, glm::vec3(1.0f), sign_rect(Sign::bus_stop), {x, 2.6f, zb + 0.25f}, {x, 2.6f, za}, {x, 2.92f, za}, {x, 2.92f, zb + 0.25f});
     else b.picture(Mat::signs, glm::vec3(1.0f), sign_rect(Sign::bus_stop), {x, 2.6f, za}, {x, 2.6f, zb + 0.25f}, {x, 2.92f, zb + 0.25f}, {x, 2.92f, za});
   }
-  add_node(scene, mesh.name, parent, scene.add_mesh(std::move(mesh)), frame);
+  add_mesh_node(scene, parent, std::move(mesh), frame);
   const auto at = [&](glm::vec3 p) { return glm::vec3(frame * glm::vec4(p, 1.0f)); };
   add_light(scene, "bus_shelter_strip", parent, at({0.5f * width, high - 0.2f, 0.35f}), {{0.92f, 1.0f, 0.97f}, 85.0f, 14.0f, 0, 0, true, 0.5f});
   add_light(scene, "bus_shelter_poster", parent, at({width + 0.5f, 1.2f, 0.65f}), {{0.80f, 0.72f, 0.75f}, 26.0f, 8.0f, 0, 0, false, 0.5f});

@@ -92,7 +92,7 @@ void add_wires(Scene& scene) {
       b.cylinder(wire, {x, y, spans[k]}, {x, y + 0.12f, spans[k]}, 0.03f, 0.02f, 5);
     }
   }
-  add_node(scene, mesh.name, parent, scene.add_mesh(std::move(mesh)));
+  add_mesh_node(scene, parent, std::move(mesh));
 
   // Strings of bulbs over the lane, by the toy shop and the café.
   Mesh bulbs;
@@ -111,7 +111,7 @@ void add_wires(Scene& scene) {
     if (number % 3 != 2) add_light(scene, "festoon_light_" + std::to_string(number), parent, line[7] - glm::vec3(0, 0.2f, 0), {{1.0f, 0.60f, 0.24f}, 75.0f, 15.0f, 0, 0, false, 0.6f});
     ++number;
   }
-  add_node(scene, bulbs.name, parent, scene.add_mesh(std::move(bulbs)));
+  add_mesh_node(scene, parent, std::move(bulbs));
 }
 
 }  // namespace petrichor::city

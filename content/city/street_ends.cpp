@@ -142,7 +142,7 @@ void backdrop(Scene& scene, int parent) {
         }
       }
     }
-    add_node(scene, mesh.name, parent, scene.add_mesh(std::move(mesh)));
+    add_mesh_node(scene, parent, std::move(mesh));
   }
 }
 
@@ -156,7 +156,7 @@ void add_street_ends(Scene& scene) {
   gate.name = "gate_passage";
   Builder g(gate, wall_frame({-main_wall_m, 0, -street_end_m}, {0, 0, 1}));
   passage(g, 2.0f * main_wall_m, gate_ground_m, depth);
-  add_node(scene, gate.name, parent, scene.add_mesh(std::move(gate)));
+  add_mesh_node(scene, parent, std::move(gate));
   add_light(scene, "gate_passage_light", parent, {0, 2.9f, -street_end_m - 5.0f}, {sodium_light, 260.0f, 22.0f, 0, 0, false, 0.12f});
 
   Mesh church;
@@ -170,7 +170,7 @@ void add_street_ends(Scene& scene) {
   b.quad(plain(glm::vec3(0.05f), Finish::wet_stone), {9.6f, 13.0f, -34.0f}, {9.6f, 13.0f, -4.0f}, {0, 22.0f, -4.0f}, {0, 22.0f, -34.0f});
   b.quad(plain({0.07f, 0.035f, 0.015f}, Finish::paint), {-1.3f, 0, 4.7f}, {1.3f, 0, 4.7f}, {1.3f, 4.2f, 4.7f}, {-1.3f, 4.2f, 4.7f});
   b.triangle(glow(Glow::clock), {-1.3f, 4.3f, 4.7f}, {1.3f, 4.3f, 4.7f}, {0, 6.0f, 4.7f});
-  add_node(scene, church.name, parent, scene.add_mesh(std::move(church)));
+  add_mesh_node(scene, parent, std::move(church));
   add_light(scene, "church_flood", parent, {-3.0f, 7.0f, -73.0f}, {{1.0f, 0.74f, 0.42f}, 26000.0f, 80.0f, 12.0f, 34.0f, false, 0.2f}, {6.5f, 26.0f, -14.4f});
   add_light(scene, "church_square_lamp", parent, {-7.0f, 4.6f, -82.0f}, {sodium_light, 420.0f, 26.0f, 0, 0, false, 0.12f});
 }

@@ -164,7 +164,7 @@ void room(Scene& scene, int parent) {
     if (p.x - main_wall_m + p.z + lane_wall_m < 1.0f - 3.0f + 0.6f) continue;
     b.box(glow(Glow::shop), p - 0.025f, p + 0.025f);
   }
-  add_node(scene, mesh.name, parent, scene.add_mesh(std::move(mesh)));
+  add_mesh_node(scene, parent, std::move(mesh));
 }
 
 }  // namespace
@@ -241,7 +241,7 @@ void add_toy_shop(Scene& scene) {
   hanging.box(plain(lacquer, Finish::gloss), {-0.025f, y0, za}, {0.025f, y1, zb});
   hanging.picture(Mat::signs, glm::vec3(1.0f), sign_rect(Sign::hanging_bear), {-0.027f, y0, za}, {-0.027f, y0, zb}, {-0.027f, y1, zb}, {-0.027f, y1, za});
   hanging.picture(Mat::signs, glm::vec3(1.0f), sign_rect(Sign::hanging_bear), {0.027f, y0, zb}, {0.027f, y0, za}, {0.027f, y1, za}, {0.027f, y1, zb});
-  add_node(scene, mesh.name, parent, scene.add_mesh(std::move(mesh)));
+  add_mesh_node(scene, parent, std::move(mesh));
 
   const glm::vec3 warm(1.0f, 0.70f, 0.38f);
   add_light(scene, "toy_shop_lamp_0", parent, {10.9f, 2.5f, -9.3f}, {warm, 170.0f, 18.0f, 0, 0, true, 0.15f});

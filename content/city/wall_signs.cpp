@@ -124,7 +124,7 @@ void add_wall_signs(Scene& scene) {
       c.picture(Mat::signs, glm::vec3(1.0f), sign_rect(Sign::street_cross), {-0.45f, -0.09f, 0.03f}, {0.45f, -0.09f, 0.03f}, {0.45f, 0.09f, 0.03f}, {-0.45f, 0.09f, 0.03f});
     }
   }
-  add_node(scene, mesh.name, parent, scene.add_mesh(std::move(mesh)));
+  add_mesh_node(scene, parent, std::move(mesh));
 }
 
 }  // namespace petrichor::city

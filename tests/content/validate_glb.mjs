@@ -10,7 +10,7 @@ const home = join(folder, 'node_modules', 'gltf-validator');
 if (!existsSync(home)) {
   mkdirSync(folder, { recursive: true });
   try {
-    execFileSync('npm', ['install', '--no-audit', '--no-fund', '--prefix', folder, 'gltf-validator@2'], { stdio: 'pipe', timeout: 120000 });
+    execFileSync('npm', ['install', '--no-audit', '--no-fund', '--prefix', folder, 'gltf-validator'], { stdio: 'pipe', timeout: 120000 });
   } catch (error) {
     console.log(`skipped: npm could not fetch gltf-validator into ${folder} (${String(error.message).split('\n')[0]})`);
     process.exit(77);
