@@ -14,8 +14,8 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::size_t maximum_nesting = 512;             // recursion of tinygltf and json::dump stays small
-constexpr std::size_t maximum_json_values = 16'000'000;  // about a gigabyte once parsed
+constexpr std::size_t maximum_nesting = 512;            // recursion of tinygltf and json::dump stays small
+constexpr std::size_t maximum_json_values = 8'000'000;  // over half a gigabyte once parsed
 constexpr std::size_t maximum_warnings = 100;
 
 std::uint32_t read_u32(std::span<const std::uint8_t> bytes, std::size_t offset) {

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <memory>
 #include <nlohmann/json_fwd.hpp>
@@ -15,7 +16,8 @@
 
 namespace tinygltf {
 class Model;
-}
+struct Primitive;
+}  // namespace tinygltf
 
 namespace petrichor {
 
@@ -28,6 +30,8 @@ struct GltfError {
 [[noreturn]] void gltf_fail(std::string path, std::string message);
 
 struct AccessorView;
+
+inline constexpr float largest_position_m = 1e12f;  // squares and cubes of it stay finite floats
 
 struct Document {
   Document();
@@ -75,8 +79,20 @@ void convert_images(Document&, Model&);
 void convert_materials(Document&, Model&);
 void convert_nodes(Document&, Model&);  // scene, nodes, meshes, lights, cameras
 
-// One mesh with the given morph weights applied.
-Mesh convert_mesh(Document&, const Model&, int mesh_index, const std::vector<double>& weights);
+// Where the joints of /skins/<skin> stand: world transform x inverse bind matrix, each.
+struct SkinPose {
+  int skin = no_index;
+  std::vector<glm::dmat4> joints;
+};
+SkinPose pose_of_skin(Document&, int skin, const std::function<glm::dmat4(std::size_t)>& world_of_node);
+
+// Moves out.vertices, which were read from the source vertices `used`, to world space.
+void apply_pose(Document&, const tinygltf::Primitive& source, const std::vector<std::uint32_t>& used, const SkinPose&,
+                Primitive& out, const std::string& path);
+
+// One mesh with the given morph weights applied, posed by its skin if there is one.
+Mesh convert_mesh(Document&, const Model&, int mesh_index, const std::vector<double>& weights,
+                  const SkinPose* = nullptr);
 
 // Fills Vertex::tangent. `uv1`: whether the normal texture uses the second set of coordinates; `exact` splits
 // vertices where mirrored halves meet.

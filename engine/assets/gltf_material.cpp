@@ -3,8 +3,11 @@
 #include <fmt/format.h>
 #include <tiny_gltf.h>
 
+#include <algorithm>
+#include <atomic>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <thread>
 
 #include "engine/assets/gltf_document.hpp"
 #include "engine/assets/image.hpp"
@@ -144,28 +147,51 @@ Material convert_material(Document& document, std::size_t index) {
 
 }  // namespace
 
+// Decoding is what takes time in a model with textures: images share the cores. Errors come in file order.
 void convert_images(Document& document, Model& model) {
   const json& images = member(*document.json, "images");
-  std::uint64_t all_bytes = 0;
+  struct Job {
+    std::span<const std::uint8_t> bytes;
+    std::string name;
+    Result<Image> image = Image{};
+  };
+  std::vector<Job> jobs(images.size());
   for (std::size_t i = 0; i < images.size(); ++i) {
     const std::string path = fmt::format("/images/{}", i);
-    Image& out = model.images.emplace_back();
     if (only_for_extensions(images[i])) continue;
     const bool has_uri = images[i].contains("uri");
     if (has_uri == images[i].contains("bufferView")) gltf_fail(path, "either a uri or a bufferView is needed");
-    const auto bytes = has_uri ? bytes_of_uri(document, images[i]["uri"].get_ref<const std::string&>(), path + "/uri")
-                               : bytes_of_view(document, images[i]["bufferView"].get<int>());
-    std::string name = path;
-    if (has_uri && !is_data_uri(images[i]["uri"].get_ref<const std::string&>()))
-      name = images[i]["uri"].get<std::string>().substr(0, 200);
-    auto decoded = decode_image(bytes, name);
-    if (!decoded)
-      gltf_fail(path, name == path ? decoded.error().message : fmt::format("{}: {}", name, decoded.error().message));
-    all_bytes += decoded->pixels.size();
-    if (all_bytes > maximum_all_pixel_bytes)
-      gltf_fail(path, fmt::format("all images together pass {} bytes", maximum_all_pixel_bytes));
-    out = std::move(*decoded);
+    jobs[i].name = path;
+    if (has_uri) {
+      const std::string& uri = images[i]["uri"].get_ref<const std::string&>();
+      jobs[i].bytes = bytes_of_uri(document, uri, path + "/uri");
+      if (!is_data_uri(uri)) jobs[i].name += ": " + uri.substr(0, 200);
+    } else {
+      jobs[i].bytes = bytes_of_view(document, images[i]["bufferView"].get<int>());
+    }
   }
+
+  std::atomic<std::size_t> next{0};
+  std::atomic<std::uint64_t> all_bytes{0};
+  const auto work = [&] {
+    for (std::size_t i = next++; i < jobs.size(); i = next++) {
+      if (jobs[i].name.empty() || all_bytes > maximum_all_pixel_bytes) continue;
+      jobs[i].image = decode_image(jobs[i].bytes, jobs[i].name);
+      if (jobs[i].image) all_bytes += jobs[i].image->pixels.size();
+    }
+  };
+  {
+    const std::size_t threads = std::min<std::size_t>({jobs.size(), std::thread::hardware_concurrency(), 8});
+    std::vector<std::jthread> helpers;
+    for (std::size_t i = 1; i < threads; ++i) helpers.emplace_back(work);
+    work();
+  }
+  for (Job& job : jobs) {
+    if (!job.image) gltf_fail(job.name, job.image.error().message);
+    model.images.push_back(std::move(*job.image));
+  }
+  if (all_bytes > maximum_all_pixel_bytes)
+    gltf_fail("/images", fmt::format("together they pass {} bytes", maximum_all_pixel_bytes));
 }
 
 void convert_materials(Document& document, Model& model) {

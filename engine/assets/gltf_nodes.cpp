@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <tuple>
 
 #include "engine/assets/gltf_document.hpp"
 
@@ -16,6 +17,7 @@ namespace {
 using nlohmann::json;
 
 constexpr double largest_transform = 1e15;
+constexpr float largest_light = 1e15f;  // candela or lux; the sun seen from Earth is 1e5 lux
 
 // The parent of each glTF node. Nodes form strict trees (section 3.5.2): one parent each, no cycles.
 std::vector<std::int32_t> find_parents(const tinygltf::Model& gltf) {
@@ -178,6 +180,10 @@ void convert_lights(Document& document, Model& model) {
     }
     light.intensity = source.value("intensity", 1.0f);
     light.range_m = source.value("range", 0.0f);
+    if (!(light.intensity * std::max({1.0f, light.colour.x, light.colour.y, light.colour.z}) <= largest_light)) {
+      gltf_fail(path,
+                fmt::format("an intensity of {:g} is asked for, at most {:g} is read", light.intensity, largest_light));
+    }
     if (source.contains("spot")) {
       light.inner_cone_rad = source["spot"].value("innerConeAngle", light.inner_cone_rad);
       light.outer_cone_rad = source["spot"].value("outerConeAngle", light.outer_cone_rad);
@@ -212,24 +218,24 @@ void convert_cameras(Document& document, Model& model) {
   }
 }
 
-// One Model mesh per glTF mesh, and one more for each other set of morph weights a node asks for.
+// One Model mesh per glTF mesh, and one more for each other skin or set of morph weights a node asks for.
 class MeshTable {
  public:
   MeshTable(Document& document, Model& model) : document_(document), model_(model) {}
 
-  std::int32_t find(int mesh, const std::vector<double>& node_weights) {
+  std::int32_t find(int mesh, const std::vector<double>& node_weights, const SkinPose* pose = nullptr) {
     const auto& defaults = document_.gltf->meshes[static_cast<std::size_t>(mesh)].weights;
     const auto& weights = node_weights.empty() ? defaults : node_weights;
-    const auto [entry, added] =
-        known_.emplace(std::pair(mesh, weights), static_cast<std::int32_t>(model_.meshes.size()));
-    if (added) model_.meshes.push_back(convert_mesh(document_, model_, mesh, weights));
+    const auto [entry, added] = known_.emplace(std::tuple(mesh, pose ? pose->skin : no_index, weights),
+                                               static_cast<std::int32_t>(model_.meshes.size()));
+    if (added) model_.meshes.push_back(convert_mesh(document_, model_, mesh, weights, pose));
     return entry->second;
   }
 
  private:
   Document& document_;
   Model& model_;
-  std::map<std::pair<int, std::vector<double>>, std::int32_t> known_;
+  std::map<std::tuple<int, int, std::vector<double>>, std::int32_t> known_;
 };
 
 void warn_of_motion(Document& document) {
@@ -237,9 +243,9 @@ void warn_of_motion(Document& document) {
   for (const char* name : {"animations", "skins"}) {
     if (!root.contains(name)) continue;
     for (std::size_t i = 0; i < root[name].size(); ++i) {
+      const std::string what = root[name][i].value("name", std::string()).substr(0, 60);
       document.warn(fmt::format("/{}/{}", name, i),
-                    fmt::format("\"{}\" has no effect: models stand still",
-                                root[name][i].value("name", std::string()).substr(0, 60)));
+                    fmt::format("\"{}\" does not move: models stand in their first pose", what));
     }
   }
 }
@@ -257,6 +263,7 @@ void convert_nodes(Document& document, Model& model) {
   std::vector<std::int32_t> new_index(gltf.nodes.size(), no_index);
   std::vector<glm::dmat4> worlds;
   MeshTable meshes(document, model);
+  std::vector<std::size_t> skinned;
   while (!pending.empty()) {
     const auto index = static_cast<std::size_t>(pending.back());
     pending.pop_back();
@@ -268,7 +275,10 @@ void convert_nodes(Document& document, Model& model) {
     node.parent = parents[index] == no_index ? no_index : new_index[static_cast<std::size_t>(parents[index])];
     set_transform(document, node, source);
     check_world(node, model.nodes, worlds);
-    if (source.mesh >= 0) node.mesh = meshes.find(source.mesh, source.weights);
+    if (source.mesh >= 0 && source.skin >= 0)
+      skinned.push_back(index);
+    else if (source.mesh >= 0)
+      node.mesh = meshes.find(source.mesh, source.weights);
     node.camera = source.camera;
     if (const json::json_pointer light("/extensions/KHR_lights_punctual/light"); raw.contains(light))
       node.light = raw.at(light).get<std::int32_t>();
@@ -280,6 +290,24 @@ void convert_nodes(Document& document, Model& model) {
     for (auto child = source.children.rbegin(); child != source.children.rend(); ++child) pending.push_back(*child);
   }
   if (model.nodes.empty()) document.warn("", "the scene has no nodes");
+
+  // The place of a skinned mesh's own node does not matter (section 3.7.3.3): it hangs on a root of its own.
+  const auto world_of_node = [&](std::size_t gltf_node) {
+    const std::int32_t at = new_index[gltf_node];
+    return at == no_index ? glm::dmat4(1.0) : worlds[static_cast<std::size_t>(at)];
+  };
+  std::map<int, SkinPose> poses;
+  for (std::size_t index : skinned) {
+    const tinygltf::Node& source = gltf.nodes[index];
+    auto pose = poses.find(source.skin);
+    if (pose == poses.end())
+      pose = poses.emplace(source.skin, pose_of_skin(document, source.skin, world_of_node)).first;
+    Node node;
+    node.name = source.name;
+    node.json_path = fmt::format("/nodes/{}", index);
+    node.mesh = meshes.find(source.mesh, source.weights, &pose->second);
+    model.nodes.push_back(std::move(node));
+  }
 }
 
 }  // namespace petrichor

@@ -18,7 +18,6 @@ namespace {
 // same accessor many times.
 constexpr std::uint64_t maximum_vertices = 32u << 20;
 constexpr std::uint64_t maximum_indices = 256u << 20;
-constexpr float largest_position_m = 1e12f;  // squares and cubes of it stay finite floats
 
 struct Attributes {
   AccessorView position;
@@ -217,7 +216,8 @@ std::vector<Target> open_targets(Document& document, const tinygltf::Primitive& 
 }
 
 std::optional<Primitive> convert_primitive(Document& document, const Model& model, const tinygltf::Primitive& source,
-                                           const std::vector<double>& weights, const std::string& path) {
+                                           const std::vector<double>& weights, const SkinPose* pose,
+                                           const std::string& path) {
   if (source.mode < TINYGLTF_MODE_TRIANGLES) {
     document.warn(path + "/mode", fmt::format("mode {} (points or lines) is left out", source.mode));
     return std::nullopt;
@@ -256,6 +256,7 @@ std::optional<Primitive> convert_primitive(Document& document, const Model& mode
     gltf_fail(path, fmt::format("the model passes {} vertices", maximum_vertices));
   out.vertices.reserve(used.size());
   for (std::uint32_t i : used) out.vertices.push_back(read_vertex(from, targets, i));
+  if (pose) apply_pose(document, source, used, *pose, out, path);
 
   if (from.normal)
     normalise_normals(out);
@@ -277,13 +278,14 @@ std::optional<Primitive> convert_primitive(Document& document, const Model& mode
 
 }  // namespace
 
-Mesh convert_mesh(Document& document, const Model& model, int mesh_index, const std::vector<double>& weights) {
+Mesh convert_mesh(Document& document, const Model& model, int mesh_index, const std::vector<double>& weights,
+                  const SkinPose* pose) {
   const tinygltf::Mesh& source = document.gltf->meshes[static_cast<std::size_t>(mesh_index)];
   Mesh mesh;
   mesh.name = source.name;
   for (std::size_t i = 0; i < source.primitives.size(); ++i) {
     const std::string path = fmt::format("/meshes/{}/primitives/{}", mesh_index, i);
-    if (auto primitive = convert_primitive(document, model, source.primitives[i], weights, path)) {
+    if (auto primitive = convert_primitive(document, model, source.primitives[i], weights, pose, path)) {
       mesh.primitives.push_back(std::move(*primitive));
     }
   }

@@ -106,9 +106,7 @@ Result<Image> read_pixels(OIIO::ImageInput& input, const std::string& name) {
   return image;
 }
 
-}  // namespace
-
-Result<Image> decode_image(std::span<const std::uint8_t> bytes, const std::string& name) {
+Result<Image> decode(std::span<const std::uint8_t> bytes, const std::string& name) {
   const char* extension = extension_of(bytes);
   if (extension == nullptr) {
     return failure(
@@ -132,6 +130,18 @@ Result<Image> decode_image(std::span<const std::uint8_t> bytes, const std::strin
   }
   if (!opened) return failure(fmt::format("the image cannot be read: {}", one_line(input->geterror())));
   return read_pixels(*input, name);
+}
+
+}  // namespace
+
+Result<Image> decode_image(std::span<const std::uint8_t> bytes, const std::string& name) {
+  try {
+    return decode(bytes, name);
+  } catch (const std::bad_alloc&) {
+    return failure("not enough memory for the image");
+  } catch (const std::exception& error) {
+    return failure(fmt::format("the image cannot be decoded: {}", error.what()));
+  }
 }
 
 }  // namespace petrichor

@@ -48,7 +48,13 @@ class Mutation : public Assets {
     b.node({{"rotation", {0, 0, 0, 1}},
             {"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}},
             {"extras", {{"light", {{"casts_shadow", true}}}}}});
-    b.root["scenes"] = {{{"nodes", {1}}}};
+    b.primitive()["attributes"]["JOINTS_0"] =
+        b.data(std::vector<std::uint8_t>{0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0}, uint8, "VEC4", 4);
+    b.primitive()["attributes"]["WEIGHTS_0"] =
+        b.data(std::vector<std::uint8_t>{255, 0, 0, 0, 255, 0, 0, 0, 128, 127, 0, 0}, uint8, "VEC4", 4, true);
+    b.root["skins"] = {{{"joints", {1, 2}}}};
+    b.node({{"mesh", 0}, {"skin", 0}});
+    b.root["scenes"] = {{{"nodes", {1, 3}}}};
     b.root["scene"] = 0;
     return b;
   }
@@ -118,8 +124,8 @@ class Mutation : public Assets {
 TEST_F(Mutation, TheOriginalIsValid) {
   const auto model = load_bytes(rich().glb());
   ASSERT_TRUE(model) << model.error().message;
-  EXPECT_TRUE(model->warnings.empty()) << model->warnings.front();
-  EXPECT_EQ(model->nodes.size(), 3u);
+  EXPECT_EQ(model->warnings.size(), 1u) << "the skin, which does not move";
+  EXPECT_EQ(model->nodes.size(), 5u) << "four, and the root that the posed mesh hangs on";
   check_promises(*model);
 }
 

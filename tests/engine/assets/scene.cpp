@@ -228,6 +228,38 @@ TEST_F(Scene, ExtrasRideAlong) {
   EXPECT_EQ(model.nodes.at(1).extras_json, "");
 }
 
+TEST_F(Scene, SkinnedMeshesStandWhereTheirJointsDo) {
+  Builder b = Builder::triangle();
+  b.primitive()["attributes"]["JOINTS_0"] =
+      b.data(std::vector<std::uint8_t>{0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0}, uint8, "VEC4", 4);
+  b.primitive()["attributes"]["WEIGHTS_0"] =
+      b.data(std::vector<float>{1, 0, 0, 0, 1, 0, 0, 0, 0.5f, 0.5f, 0, 0}, float32, "VEC4", 4);
+  // Bound at the origin and at (1, 0, 0); they stand at (10, 0, 0) and (10, 0, 4). The node's own place is ignored.
+  const int bind = b.data(std::vector<float>{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0,  0, 0, 1,
+                                             1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, -1, 0, 0, 1},
+                          float32, "MAT4", 16);
+  b.root["skins"] = {{{"joints", {1, 2}}, {"inverseBindMatrices", bind}}};
+  b.root["nodes"] =
+      json::parse(R"([{"mesh": 0, "skin": 0, "translation": [500, 0, 0]}, {"translation": [10, 0, 0], "children": [2]},
+                                    {"translation": [0, 0, 4]}])");
+  const Model model = must_load(b);
+  const Primitive& p = model.meshes.at(0).primitives.at(0);
+  EXPECT_EQ(p.vertices.at(p.indices.at(0)).position_m, glm::vec3(10, 0, 0));
+  EXPECT_EQ(p.vertices.at(p.indices.at(1)).position_m, glm::vec3(10, 0, 4));
+  EXPECT_EQ(p.vertices.at(p.indices.at(2)).position_m, glm::vec3(9.5f, 1, 2))
+      << "halfway between (10, 1, 0) and (9, 1, 4)";
+  glm::vec3 low, high;
+  ASSERT_TRUE(model_bounds(model, low, high));
+  EXPECT_EQ(high, glm::vec3(10, 1, 4));
+  EXPECT_TRUE(warned(model, "/skins/0"));
+  b.root["skins"][0]["joints"] = {1};
+  must_fail(b, {"/accessors/1", "joint 1", "/skins/0 has 1"});
+  b.root["skins"][0]["joints"] = {1, 2, 0};
+  must_fail(b, {"/skins/0/inverseBindMatrices"});
+  b.root["skins"][0]["joints"] = {1, 3};
+  must_fail(b, {"/skins/0/joints/1"});
+}
+
 TEST_F(Scene, AnimationsAreNamedInAWarning) {
   Builder b = Builder::triangle();
   b.root["animations"] = json::parse(R"([{"name": "wave", "channels": [], "samplers": []}])");
