@@ -31,7 +31,7 @@ PassOffer airlight() {
            {"light_lists", SlotAccess::read},
            {"shadow_atlas", SlotAccess::read, true},
            {"airlight", SlotAccess::write}},
-          {{"threshold", 0.001}, {"forward", 0.8}},  // of a white pixel; mean cosine of the scattering angle
+          {{"threshold", 0.003}, {"forward", 0.8}},  // of a white pixel; mean cosine of the scattering angle
           {{"lists", {{"systems/atmosphere/airlight_lists.comp.glsl"}, {}}},
            {"plain", {files, {}}},
            {"shadows", {files, {"SHADOWS"}}}},

@@ -116,7 +116,7 @@ std::vector<PassOffer> image_passes() {
   offers.push_back({"antialias",
                     "smooths edges and dithers to 8 bits",
                     {{"display", SlotAccess::read}, {"picture", SlotAccess::write}},
-                    {{"least_contrast", 0.03}, {"relative_contrast", 0.12}, {"softening", 0.7}},
+                    {{"least_contrast", 0.05}, {"relative_contrast", 0.16}, {"softening", 0.7}},
                     {{"find", {{"systems/image/antialias.comp.glsl"}, {"FIND"}}},
                      {"smooth", {{"systems/image/antialias.comp.glsl"}, {}}}},
                     {},

@@ -86,7 +86,7 @@ PassOffer light_lists(State state) {
            {"normal", SlotAccess::read},
            {"shadow_atlas", SlotAccess::read, true},
            {"light_lists", SlotAccess::write}},
-          {{"threshold", 0.0015}},  // of a white pixel
+          {{"threshold", 0.003}},  // of a white pixel
           {{"plain", {{"systems/lighting/light_lists.comp.glsl"}, {}}},
            {"shadows", {{"systems/lighting/light_lists.comp.glsl"}, {"SHADOWS"}}}},
           {},
