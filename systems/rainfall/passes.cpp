@@ -24,7 +24,8 @@ struct Command {
 struct RainGpu {
   Buffer layers, cells, command, optical_depth, radiance, optics, streaks;
   VertexArray no_vertices;
-  bool software = false, software_known = false;
+  bool software = false;  // draw sorted by length
+  bool software_device = false, device_known = false;
   int width = 0, height = 0;
   std::uint32_t layer_count = 0, capacity = 0;
   float least_radiance = 0.0f;
@@ -76,8 +77,10 @@ bool is_software_gl() {
 
 void list_cells(RainGpu& gpu, PassContext& context) {
   const Frame& frame = context.frame;
-  if (!gpu.software_known) gpu.software = is_software_gl();
-  gpu.software_known = true;
+  if (!gpu.device_known) gpu.software_device = is_software_gl();
+  gpu.device_known = true;
+  const float path = context.parameter("path");
+  gpu.software = path == 0.0f ? gpu.software_device : path == 2.0f;
   gpu.least_radiance = context.parameter("least_radiance");
   const RainLayers view = view_layers(*frame.rain, frame.camera, context.width, context.height);
   gpu.layer_count = static_cast<std::uint32_t>(view.layers.size());
@@ -250,7 +253,8 @@ std::vector<PassOffer> rainfall_passes() {
   std::vector<PassOffer> offers(3);
   offers[0].name = "rain_cells";
   offers[0].meaning = "cells of the drop field that the view can see, with the lamps that light them";
-  offers[0].parameters = {{"least_radiance", 0.004}};
+  // path: 0 by the device, 1 all in one dispatch (GPUs), 2 sorted by length first (software OpenGL).
+  offers[0].parameters = {{"least_radiance", 0.004}, {"path", 0.0}};
   offers[0].shaders = {{"cells", {{"systems/rainfall/rain_cells.comp.glsl"}, {}}},
                        {"cells_software", {{"systems/rainfall/rain_cells.comp.glsl"}, {"SOFTWARE"}}}};
   offers[0].wanted = rains;

@@ -117,7 +117,7 @@ Result<void> RainStage::load() {
     splat["occlusion_map"] = "map";
   }
   if (set_.draw_rain) {
-    table["passes"].push_back({{"pass", "rain_cells"}});
+    table["passes"].push_back({{"pass", "rain_cells"}, {"parameters", {{"path", set_.path}}}});
     table["passes"].push_back(splat);
     table["passes"].push_back({{"pass", "rain_composite"}, {"colour", "colour"}});
   }

@@ -1,0 +1,76 @@
+// The running field against counting and against integrals.
+#include "systems/rainfall/measure.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "engine/platform/context.hpp"
+#include "systems/rainfall/drop_physics.hpp"
+#include "systems/rainfall/drop_sizes.hpp"
+
+namespace petrichor {
+namespace {
+
+class RainMeasure : public testing::Test {
+ protected:
+  void SetUp() override {
+    auto made = make_headless_context({.debug = true});
+    if (!made) GTEST_SKIP() << made.error().message;
+    context = std::move(*made);
+  }
+  std::unique_ptr<Context> context;
+};
+
+TEST_F(RainMeasure, WaterThatFallsIsTheWaterThatWasAsked) {
+  for (const double rate : {0.5, 2.5, 10.0, 50.0, 100.0}) {
+    for (const double wind : {0.0, 6.0}) {
+      const auto m = measure_rain(rate, wind, 4.0, 3);
+      ASSERT_TRUE(m) << m.error().message;
+      EXPECT_NEAR(m->measured_mm_per_hour, rate, 0.02 * rate) << "wind " << wind;
+    }
+  }
+}
+
+TEST_F(RainMeasure, CountsAreThoseOfTheLiterature) {
+  const double expected[][3] = {{2.5, 400, 1258}, {10, 845, 2919}, {50, 1743, 6797}};
+  for (const auto& [rate, drops, impacts] : expected) {
+    const auto m = measure_rain(rate, 0.0, 4.0, 1);
+    ASSERT_TRUE(m);
+    EXPECT_NEAR(m->drops_per_m3, drops, 0.03 * drops) << rate;
+    EXPECT_NEAR(m->impacts_per_m2_s, impacts, 0.03 * impacts) << rate;
+    EXPECT_NEAR(m->mean_fall_speed_mps, impacts / drops, 0.02 * impacts / drops) << rate;
+  }
+}
+
+TEST_F(RainMeasure, NoRespawnBias) {
+  // Water through a plane is water in the air times its speed. A field that replaces fallen drops by ones drawn from
+  // the air's distribution has too few large ones and loses 41% of the water at 10 mm/h.
+  Emitter emitter;
+  emitter.rain_mm_per_hour = 10.0f;
+  double first = 0.0;
+  for (const double seconds : {1.0, 12.0}) {  // the same early and late
+    const auto m = measure_rain(emitter, {}, seconds);
+    ASSERT_TRUE(m);
+    EXPECT_NEAR(m->measured_mm_per_hour, 10.0, 0.3);
+    if (first == 0.0) first = m->mean_fall_speed_mps;
+    EXPECT_NEAR(m->mean_fall_speed_mps, first, 0.02 * first);
+  }
+}
+
+TEST_F(RainMeasure, GammaSizesToo) {
+  Emitter emitter;
+  emitter.drop_sizes = DropSizes::gamma;
+  emitter.gamma_shape = 3.0f;
+  emitter.rain_mm_per_hour = 25.0f;
+  Wind wind;
+  wind.velocity_mps = {4.0f, 0.0f, 0.0f};
+  wind.gust_mps = 3.0f;
+  wind.swirl_mps = 2.0f;
+  const auto m = measure_rain(emitter, wind, 4.0);
+  ASSERT_TRUE(m);
+  EXPECT_NEAR(m->measured_mm_per_hour, 25.0, 0.5);
+}
+
+}  // namespace
+}  // namespace petrichor
