@@ -117,7 +117,7 @@ class ScriptHost {
 
 // Runs a file that returns a table, in a sandbox of its own without world or timeline, and gives the table as
 // JSON. A table whose keys are 1..n becomes an array; any other, an empty one too, an object, in which
-// integer keys turn into their digits. Functions, NaN, cycles, more than 64 levels or a million values are
+// integer keys turn into their digits. Functions, NaN, cycles, more than 64 levels or 200,000 values are
 // errors that name the place. `files`, where given, receives what was read, also on failure.
 Result<nlohmann::json> read_table(const std::filesystem::path&, const ScriptOptions&,
                                   std::vector<std::filesystem::path>* files = nullptr);

@@ -38,7 +38,7 @@ bool is_utf8(std::string_view text) {
 namespace {
 
 constexpr int deepest = 64;
-constexpr std::size_t most_values = 1'000'000;
+constexpr std::size_t most_values = 200'000;
 
 // The walk of to_json. Only raw access: no metamethod of the script runs.
 struct JsonWriter {

@@ -4,6 +4,7 @@
 
 #include <unistd.h>
 
+#include "engine/ecs/schema_reference.hpp"
 #include "tests/engine/script/fixture.hpp"
 
 namespace petrichor {
@@ -52,6 +53,14 @@ names(_G, "")
       EXPECT_TRUE(name.starts_with("model")) << name;
   }
   EXPECT_GT(rows, 25);
+}
+
+TEST_F(Reference, ThePageInDocsIsTheOneThatIsGenerated) {
+  std::ifstream stream(std::filesystem::path(PETRICHOR_SOURCE_DIR) / "docs/reference.md");
+  std::stringstream page;
+  page << stream.rdbuf();
+  EXPECT_TRUE(page.str() == script_reference() + "\n" + schema_reference(component_schemas()))
+      << "write it anew: petrichor info --reference docs/reference.md";
 }
 
 }  // namespace
