@@ -75,6 +75,10 @@ Member number(std::string_view name, double minimum = -FLT_MAX, double maximum =
 Member numbers(std::string_view name, std::size_t length, double minimum = -FLT_MAX) {
   return {name, Kind::numbers, false, minimum, FLT_MAX, {}, nullptr, length};
 }
+// Bounds that exporters state and nobody here relies on.
+Member statistics(std::string_view name) {
+  return {name, Kind::numbers, false, -DBL_MAX, DBL_MAX};
+}
 Member object(std::string_view name, const Table& table, bool required = false) {
   return {name, Kind::object, required, 0, 0, {}, &table};
 }
@@ -107,8 +111,8 @@ const Table& root_table() {
                              object("values", sparse_values, true)}};
   static const Table accessor{{text("name"), index("bufferView", "bufferViews"), whole("byteOffset", 0),
                                whole("componentType", 5120, 5126, true), boolean("normalized"),
-                               whole("count", 1, largest_integer, true), text("type", true), numbers("min", 0),
-                               numbers("max", 0), object("sparse", sparse)}};
+                               whole("count", 1, largest_integer, true), text("type", true), statistics("min"),
+                               statistics("max"), object("sparse", sparse)}};
   static const Table view{{text("name"), index("buffer", "buffers", true), whole("byteOffset", 0),
                            whole("byteLength", 1, largest_integer, true), whole("byteStride", 4, 252),
                            whole("target", 0, 1e6)}};

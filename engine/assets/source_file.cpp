@@ -5,6 +5,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstring>
@@ -144,12 +145,14 @@ Result<std::filesystem::path> resolve_uri(const std::filesystem::path& folder, s
     return folder / relative;
   };
   auto decoded = inside(percent_decode(uri));
-  if (!decoded) return decoded;
   std::error_code error;
-  if (!std::filesystem::exists(*decoded, error)) {
-    // A file whose very name holds "%20": not what the specification says, yet exporters write it.
-    auto verbatim = inside(std::string(uri));
-    if (verbatim && std::filesystem::exists(*verbatim, error)) return verbatim;
+  if (decoded && std::filesystem::exists(*decoded, error)) return decoded;
+  // Not what the specification says, yet met: names that hold "%20" themselves, and Windows separators.
+  std::string slashed = percent_decode(uri);
+  std::replace(slashed.begin(), slashed.end(), '\\', '/');
+  for (const std::string& text : {std::string(uri), slashed}) {
+    auto other = inside(text);
+    if (other && std::filesystem::exists(*other, error)) return other;
   }
   return decoded;
 }

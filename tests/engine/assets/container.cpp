@@ -62,6 +62,16 @@ TEST_F(Container, NameThatHoldsAPercentSign) {
   expect_triangle(load(b));
 }
 
+TEST_F(Container, WindowsSeparators) {
+  Builder b = Builder::triangle();
+  std::filesystem::create_directories(folder / "parts");
+  write_file(folder / "parts" / "data.bin", b.bin);
+  b.root["buffers"] = {{{"byteLength", b.bin.size()}, {"uri", "parts\\data.bin"}}};
+  expect_triangle(load(b));
+  b.root["buffers"][0]["uri"] = "..\\..\\etc\\passwd";
+  must_fail(b, {"/buffers/0/uri"});
+}
+
 TEST_F(Container, DataUriWithAnyMediaType) {
   Builder b = Builder::triangle();
   b.root["buffers"] = {{{"byteLength", b.bin.size()}, {"uri", "data:;base64," + base64(b.bin)}}};

@@ -71,6 +71,19 @@ TEST_F(Materials, JpegAndFloatImages) {
   EXPECT_EQ(value[3], 1.0f);
 }
 
+TEST_F(Materials, OtherFormatsThatAreRead) {
+  for (const char* name : {"a.bmp", "a.tif", "a.hdr", "a.webp"}) {
+    const Bytes image = encode(name, 3, std::string(name) == "a.hdr" ? OIIO::TypeDesc::FLOAT : OIIO::TypeDesc::UINT8,
+                               std::vector<float>(8 * 8 * 3, 1.0f), 8, 8);
+    const auto model = load(embedded(image));
+    ASSERT_TRUE(model) << name << ": " << model.error().message;
+    EXPECT_EQ(model->images.at(0).width, 8) << name;
+    if (!model->images[0].is_float) {
+      EXPECT_EQ(model->images[0].pixels.at(1), 255) << name;
+    }
+  }
+}
+
 TEST_F(Materials, ImagesInFilesAndViews) {
   const Bytes image = png(1, 1, 8, 2, {0, 1, 2, 3});
   write_file(folder / "brick wall.png", image);
