@@ -34,8 +34,8 @@ local passes = {
 
   -- Light. threshold: of a white pixel; a lamp that adds less to a tile of pixels is left out there.
   { pass = "environment", environment = "environment", shadow_atlas = "shadow_atlas" },
-  { pass = "light_lists", depth = "depth", normal = "normal", shadow_atlas = "shadow_atlas", light_lists = "light_lists",
-    parameters = { threshold = 0.003 } },
+  { pass = "light_lists", depth = "depth", albedo = "albedo", normal = "normal", shadow_atlas = "shadow_atlas",
+    light_lists = "light_lists", parameters = { threshold = 0.003 } },
   { pass = "shade", depth = "depth", albedo = "albedo", normal = "normal", emissive = "emissive",
     light_lists = "light_lists", shadow_atlas = "shadow_atlas", environment = "environment", colour = "colour" },
   { pass = "glass", colour = "colour", depth = "depth", environment = "environment" },

@@ -1,6 +1,6 @@
 #version 450 core
 // Which lights can be seen on the surfaces of each tile of 8x8 pixels: a mask a tile. One invocation a
-// tile; it bounds place, normals and roughness of the tile's pixels and from them, light by light, the radiance
+// tile; it bounds place, normals, roughness and albedo of the tile's pixels and from them, light by light, the radiance
 // that could leave towards the camera. Lights whose bound stays below `threshold` of a white pixel are left out:
 // that keeps the long mirror image of a lamp on a wet road 80 m away, and drops its glow on the wall beside it.
 #define GBUFFER_FIRST_UNIT 0
@@ -35,7 +35,7 @@ void main() {
   ivec2 first = tile * LIGHT_TILE;
   if (any(greaterThanEqual(first, size))) return;
 
-  float near_depth = 0.0, far_depth = 1.0, smoothest = 1.0, count = 0.0;
+  float near_depth = 0.0, far_depth = 1.0, smoothest = 1.0, whitest = 0.0, count = 0.0;
   vec3 normal_sum = vec3(0.0);
   for (int i = 0; i < LIGHT_TILE * LIGHT_TILE / 2; ++i) {  // the black fields of the board
     int row = i / (LIGHT_TILE / 2);
@@ -46,6 +46,8 @@ void main() {
     near_depth = max(near_depth, depth);
     far_depth = min(far_depth, depth > 0.0 ? depth : 1.0);
     smoothest = min(smoothest, depth > 0.0 ? encoded.z : 1.0);
+    vec3 colour = texelFetch(gbuffer_albedo, texel, 0).rgb;  // square roots
+    whitest = max(whitest, solid * max(colour.r, max(colour.g, colour.b)));
     normal_sum += solid * unit_from_octahedral(encoded.xy * 2.0 - 1.0);
     count += solid;
   }
@@ -93,7 +95,7 @@ void main() {
     float n_dot_l = spread < 1.0 ? widened_cosine(widened_cosine(dot(normal, l), normal_cosine), spread_cosine) : 1.0;
     float bound = 0.0;
     if (n_dot_l > 0.0) {
-      bound = 0.35 / PI * n_dot_l;
+      bound = whitest * whitest / PI * n_dot_l;
       vec2 lobe = sphere_light_lobe(alpha, light.intensity_radius.w, 1.0 / nearest);
       vec3 h = normalize(l - ray);
       // The half vector turns by half of what the light's direction and the view ray turn.

