@@ -1,6 +1,7 @@
 #pragma once
 // Writes glTF files piece by piece, right or wrong as a test wants them.
 
+#include <OpenImageIO/imageio.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -194,6 +195,20 @@ inline Bytes plain_rows(std::size_t row_bytes, std::size_t rows, std::uint8_t va
   Bytes out((row_bytes + 1) * rows, value);
   for (std::size_t i = 0; i < rows; ++i) out[i * (row_bytes + 1)] = 0;
   return out;
+}
+
+// The bytes of an image file in the format of its name, 8-bit or, where the format is for light, float.
+inline Bytes encode_image(const std::filesystem::path& file, int channels, const std::vector<float>& pixels, int width,
+                          int height) {
+  auto out = OIIO::ImageOutput::create(file.string());
+  EXPECT_TRUE(out) << file;
+  if (!out) return {};
+  const bool is_float = file.extension() == ".exr" || file.extension() == ".hdr";
+  const OIIO::ImageSpec spec(width, height, channels, is_float ? OIIO::TypeDesc::FLOAT : OIIO::TypeDesc::UINT8);
+  EXPECT_TRUE(out->open(file.string(), spec) && out->write_image(OIIO::TypeDesc::FLOAT, pixels.data()));
+  out->close();
+  std::ifstream in(file, std::ios::binary);
+  return Bytes(std::istreambuf_iterator<char>(in), {});
 }
 
 // A folder of its own for each test, removed after it.

@@ -200,14 +200,25 @@ TEST_F(Mutation, EveryMemberGone) {
 }
 
 TEST_F(Mutation, DamagedPictures) {
-  const Bytes original = png(8, 8, 8, 6, plain_rows(32, 8, 5));
   RandomStream random(3);
-  for (std::uint32_t round = 0; round < 500; ++round) {
-    Bytes image = original;
-    image[random.bits() % image.size()] = static_cast<std::uint8_t>(random.bits());
-    Builder b = Builder::triangle();
-    b.root["images"] = {{{"bufferView", b.view(image)}, {"mimeType", "image/png"}}};
-    attempt(b.glb(), round);
+  std::vector<float> pixels(24 * 24 * 4);
+  for (float& p : pixels) p = unit_float(random.bits());
+  for (const char* name : {"a.png", "a.jpg", "a.webp", "a.bmp", "a.tif", "a.hdr", "a.exr"}) {
+    SCOPED_TRACE(name);
+    const Bytes original = encode_image(folder / name, 3, pixels, 24, 24);
+    ASSERT_FALSE(original.empty());
+    for (std::uint32_t round = 0; round < 400; ++round) {
+      Bytes image = original;
+      // Headers are where the sizes are.
+      const std::size_t range = round % 2 ? std::min<std::size_t>(image.size(), 96) : image.size();
+      for (std::uint32_t k = 0; k < 1 + round % 3; ++k)
+        image[random.bits() % range] = static_cast<std::uint8_t>(random.bits());
+      if (round % 8 == 7) image.resize(random.bits() % image.size());
+      if (image.empty()) continue;
+      Builder b = Builder::triangle();
+      b.root["images"] = {{{"bufferView", b.view(image)}}};
+      attempt(b.glb(), round);
+    }
   }
 }
 
