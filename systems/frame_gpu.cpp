@@ -73,9 +73,7 @@ void finish_frame(Frame& frame) {
   u.mist = {frame.mist.extinction_per_m, frame.mist.albedo};
   u.rain = glm::vec4(0.0f);
   if (frame.rain && frame.rain->rain_mm_per_hour > 0.0f) {
-    const FrameRain& r = *frame.rain;
-    u.rain = {r.drawn_extinction_per_m, r.drawn_distance_m,
-              std::max(r.extinction_per_m - r.drawn_extinction_per_m, 0.0f), r.rain_mm_per_hour};
+    u.rain = rain_uniform(*frame.rain);
   }
   u.counts = {0, static_cast<std::uint32_t>(frame.instances.size()), 0, 0};
   u.counts.x = static_cast<std::uint32_t>(visible_lights(frame).size());

@@ -28,7 +28,7 @@ PassOffer backdrop_offer(const StageSet& set) {
     program.set("around", context.frame.sky.horizon_cd_m2);  // drops under an even sky show nothing else
     context.bind_image(0, "colour", GL_WRITE_ONLY);
     program.dispatch(context.width, context.height);
-    if (set.wall_hides) {
+    if (set.wall_hides && context.has("depth")) {
       const float depth = context.frame.camera.near_m / set.wall_distance_m;
       glClearTexImage(context.texture("depth").id, 0, GL_DEPTH_COMPONENT, GL_FLOAT, &depth);
     }
@@ -132,7 +132,6 @@ Result<void> RainStage::load() {
 
 Result<void> RainStage::draw(Frame& frame) {
   finish_frame(frame);
-  if (frame.rain) frame.uniforms.rain = rain_uniform(*frame.rain);
   frame_gpu_.upload(frame);
   auto output = graph_->execute(frame, frame.width, frame.height, timer_);
   if (!output) return tl::unexpected(output.error());

@@ -99,11 +99,12 @@ TEST(FrameUniforms, RainBeyondTheDrawnDropsIsExtinction) {
   frame.rain->rain_mm_per_hour = 50;
   frame.rain->extinction_per_m = 0.0012f;
   frame.rain->drawn_extinction_per_m = 0.0009f;
+  frame.rain->fade_start_m = 20;
   frame.rain->drawn_distance_m = 25;
   finish_frame(frame);
   EXPECT_NEAR(frame.uniforms.rain.x + frame.uniforms.rain.z, 0.0012f, 1e-9f);  // beyond: all of it
   EXPECT_NEAR(frame.uniforms.rain.z, 0.0003f, 1e-9f);                         // before: what is never drawn
-  EXPECT_EQ(frame.uniforms.rain.y, 25.0f);
+  EXPECT_EQ(frame.uniforms.rain.y, 22.5f);  // the middle of the fade
 }
 
 FrameLight lamp(glm::vec3 position, float candela) {
