@@ -104,7 +104,7 @@ void add_house(Scene& scene, const std::string& name, const glm::mat4& frame, co
   }
   if (f.ground == Ground::shop && std::abs(frame[3].x) < 36.0f && std::abs(frame[3].z) < 36.0f) {
     add_light(scene, name + "_window", parent, glm::vec3(frame * glm::vec4(0.5f * f.width_m, 2.1f, 1.0f, 1.0f)),
-              {{1.0f, 0.72f, 0.42f}, 46.0f, 9.0f, 0, 0, false, 0.6f});
+              {{1.0f, 0.72f, 0.42f}, 34.0f, 9.0f, 0, 0, false, 0.6f});
   }
   if (f.awning) mark_drip(scene, node, glm::translate(glm::mat4(1.0f), {0.35f, 2.0f, 1.5f}), f.width_m - 0.7f, 1.5f, 1.5f);
 }
@@ -265,7 +265,7 @@ void add_corner(Scene& scene, const std::string& name, int sx, int sz, Style sty
   for (std::size_t k = 0; k < 3; k += 2) {
     if (grounds[k].ground != Ground::shop) continue;
     add_light(scene, name + "_window_" + std::to_string(k), parent, glm::vec3(frames[k] * glm::vec4(0.5f * corner_facade_m, 2.1f, 1.0f, 1.0f)),
-              {{1.0f, 0.72f, 0.42f}, 55.0f, 10.0f, 0, 0, false, 0.6f});
+              {{1.0f, 0.72f, 0.42f}, 40.0f, 10.0f, 0, 0, false, 0.6f});
   }
   for (std::size_t k = 0; k < 3; ++k) {
     mark_drip(scene, node, frames[k] * glm::translate(glm::mat4(1.0f), {0.0f, eaves - 0.1f, 0.53f}), glm::length(line[k + 1] - line[k]), 2.0f, 2.0f);

@@ -75,9 +75,9 @@ void wheel(Builder& b, float x, float z, float side) {
   const Paint rubber = plain(glm::vec3(0.012f), Finish::rubber);
   const Paint chrome = plain(glm::vec3(0.55f), Finish::chrome);
   const auto at = [&](float offset) { return glm::vec3(x + side * offset, wheel_m, z); };
-  b.cylinder(rubber, at(-0.17f), at(0.0f), wheel_m, wheel_m, 12);
-  b.cylinder(rubber, at(0.0f), at(0.022f), wheel_m, wheel_m - 0.045f, 12);
-  b.cylinder(rubber, at(0.022f), at(0.0f), wheel_m - 0.045f, 0.17f, 12);
+  b.cylinder(rubber, at(-0.17f), at(0.0f), wheel_m, wheel_m, 10);
+  b.cylinder(rubber, at(0.0f), at(0.022f), wheel_m, wheel_m - 0.045f, 10);
+  b.cylinder(rubber, at(0.022f), at(0.0f), wheel_m - 0.045f, 0.17f, 10);
   b.cylinder(plain(glm::vec3(0.16f), Finish::steel), at(0.004f), at(0.03f), 0.185f, 0.16f, 10, false, true);
   b.cylinder(chrome, at(0.03f), at(0.055f), 0.11f, 0.03f, 8, false, true);
 }
@@ -86,14 +86,14 @@ void arch(Builder& b, float x, float z, float side) {
   const float r = wheel_m + 0.065f;
   std::vector<glm::vec3> dark{{x, sill_m - 0.01f, z}};
   std::vector<glm::vec3> lip;
-  for (int k = 0; k <= 10; ++k) {
-    const float a = pi * static_cast<float>(k) / 10.0f;
+  for (int k = 0; k <= 8; ++k) {
+    const float a = pi * static_cast<float>(k) / 8.0f;
     const glm::vec3 p(x, std::max(sill_m - 0.01f, wheel_m + r * std::sin(a)), z + r * std::cos(a) * -side);
     dark.push_back(p);
     lip.push_back(p);
   }
   b.fan(plain(glm::vec3(0.004f), Finish::matte), dark);
-  b.tube(plain(glm::vec3(0.02f), Finish::paint), lip, 0.016f, 4);
+  b.tube(plain(glm::vec3(0.02f), Finish::paint), lip, 0.016f, 3);
 }
 
 }  // namespace
@@ -124,8 +124,8 @@ Mesh car_mesh(const std::string& name, const CarShape& shape, glm::vec3 colour, 
     pane(a0, a1, pillar + 0.02f, roof_v1 + 0.05f, 2, 4);
     pane(a0, a1, std::max(0.10f, roof_v0 - 0.06f), pillar - 0.02f, 2, 4);
   }
-  pane(0.20f, 0.80f, roof_v1 + 0.10f, 0.975f, 8, 3);
-  pane(0.22f, 0.78f, 0.03f, std::max(0.10f, roof_v0 - 0.10f), 8, 3);
+  pane(0.20f, 0.80f, roof_v1 + 0.10f, 0.975f, 6, 3);
+  pane(0.22f, 0.78f, 0.03f, std::max(0.10f, roof_v0 - 0.10f), 6, 3);
   const float axle = 0.31f * shape.length_m;
   for (float x : {-1.0f, 1.0f}) {
     for (float z : {-axle, axle}) {
@@ -153,11 +153,11 @@ Mesh car_mesh(const std::string& name, const CarShape& shape, glm::vec3 colour, 
   }
   for (float end : {-1.0f, 1.0f}) {
     std::vector<glm::vec3> bumper;
-    for (int k = 0; k <= 8; ++k) {
-      const float t = -1.0f + 2.0f * static_cast<float>(k) / 8.0f;
+    for (int k = 0; k <= 6; ++k) {
+      const float t = -1.0f + 2.0f * static_cast<float>(k) / 6.0f;
       bumper.emplace_back(0.80f * shape.half_width_m / 0.77f * t, 0.39f, end * (front + 0.07f - 0.22f * std::pow(std::abs(t), 4.0f)));
     }
-    b.tube(chrome, bumper, 0.038f, 6);
+    b.tube(chrome, bumper, 0.038f, 5);
     const float z = end * (front + 0.112f);
     const float half = 0.24f;
     if (end > 0) b.picture(Mat::signs, glm::vec3(1.0f), sign_rect(Sign::number_plate), {-half, 0.33f, z}, {half, 0.33f, z}, {half, 0.45f, z}, {-half, 0.45f, z});

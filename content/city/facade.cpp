@@ -27,7 +27,7 @@ void cornice(Builder& b, const Style& style, const Facade& f, float y) {
   b.moulding(trim, profile, 0.0f, f.width_m, f.miter_left, f.miter_right);
   b.quad(trim, {-f.miter_left * 0.5f, y, 0.5f}, {f.width_m + f.miter_right * 0.5f, y, 0.5f}, {f.width_m, y, 0.0f}, {0.0f, y, 0.0f});
   if (!style.dentils) return;
-  for (float x = 0.15f; x + 0.16f < f.width_m; x += 0.36f) {
+  for (float x = 0.15f; x + 0.16f < f.width_m; x += 0.48f) {
     b.box(trim, {x, y - 0.36f, 0.06f}, {x + 0.16f, y - 0.22f, 0.26f}, face_front | face_sides | face_bottom);
   }
 }

@@ -66,7 +66,7 @@ void add_main_street(Scene& scene, const StandingWater& water, int parent) {
       std::vector<float> xs;
       for (float x : half) xs.push_back(static_cast<float>(side) * x);
       std::sort(xs.begin(), xs.end());
-      grid(mesh.primitives[Mat::asphalt], xs, steps(z0, z0 + 15.0f, 0.6f), [&](float x, float z) {
+      grid(mesh.primitives[Mat::asphalt], xs, steps(z0, z0 + 15.0f, 0.83f), [&](float x, float z) {
         // Each lane turned by half a turn: u runs from the crown to the kerb on both sides.
         const glm::vec2 uv(std::abs(x) / 5.0f, (side > 0 ? z : -z + 3.7f) / 10.0f);
         return ground_vertex(water, {x, z}, uv, street_tint(x, z));
@@ -89,7 +89,7 @@ void add_lane(Scene& scene, const StandingWater& water, int parent) {
       const float x0 = side > 0 ? near : -near - 13.75f;
       Mesh mesh;
       mesh.name = std::string("weathercock_lane_") + (side > 0 ? "east_" : "west_") + std::to_string(chunk);
-      grid(mesh.primitives[Mat::setts], steps(x0, x0 + 13.75f, 0.6f), zs, [&](float x, float z) {
+      grid(mesh.primitives[Mat::setts], steps(x0, x0 + 13.75f, 0.8f), zs, [&](float x, float z) {
         return ground_vertex(water, {x, z}, glm::vec2(z, x) / 3.0f, street_tint(x, z));
       });
       if (chunk == 0) {  // the corners between the rounded kerbs, under the pavement's edge

@@ -75,7 +75,8 @@ void add_lamps(Scene& scene) {
     const float y = pavement_height_m(0.6f);
     const std::string name = "lamp_" + std::to_string(number++);
     add_node(scene, name, parent, white ? post_white : post_sodium, glm::translate(glm::mat4(1.0f), {x, y, z}));
-    add_light(scene, name + "_light", parent, {x, y + 4.48f, z}, {white ? white_light : sodium_light, candela, 32.0f, 0, 0, shadow, 0.12f});
+    add_light(scene, name + "_light", parent, {x, y + 4.48f, z},
+              {white ? white_light : sodium_light, candela, 30.0f, 48.0f, white ? 0.0f : 86.0f, shadow, 0.12f});
   };
   const auto bracket = [&](glm::vec3 wall, glm::vec3 out, float candela, bool shadow) {
     const std::string name = "wall_lamp_" + std::to_string(number++);
@@ -84,26 +85,26 @@ void add_lamps(Scene& scene) {
     add_light(scene, name + "_light", parent, glm::vec3(frame * glm::vec4(0, -0.15f, 1.15f, 1)), {sodium_light, candela, 26.0f, 0, 0, shadow, 0.12f});
   };
   const float kerb_x = main_half_m + 0.6f;
-  // Staggered along Lamplighter Street; the ones near the crossing cast shadows.
-  post(-kerb_x, 13.5f, false, 620.0f, true);
-  post(kerb_x, 24.5f, false, 620.0f, true);
-  post(-kerb_x, 36.0f, false, 600.0f, false);
-  post(kerb_x, 48.0f, true, 560.0f, false);
-  post(kerb_x, -15.0f, false, 620.0f, true);
-  post(-kerb_x, -25.5f, false, 620.0f, true);
-  post(kerb_x, -36.5f, false, 600.0f, false);
-  post(-kerb_x, -48.0f, true, 560.0f, false);
-  post(-6.6f, -5.9f, true, 650.0f, true);  // the two at the crossing are whiter
-  post(6.6f, 5.9f, true, 650.0f, true);
+  // Their caps keep the light off the upper floors: a wide spot that points down. Staggered along Lamplighter Street; the ones near the crossing cast shadows.
+  post(-kerb_x, 13.5f, false, 400.0f, true);
+  post(kerb_x, 24.5f, false, 400.0f, true);
+  post(-kerb_x, 36.0f, false, 380.0f, false);
+  post(kerb_x, 48.0f, true, 260.0f, false);
+  post(kerb_x, -15.0f, false, 400.0f, true);
+  post(-kerb_x, -25.5f, false, 400.0f, true);
+  post(kerb_x, -36.5f, false, 380.0f, false);
+  post(-kerb_x, -48.0f, true, 260.0f, false);
+  post(-6.6f, -5.9f, true, 280.0f, true);  // the two at the crossing are whiter
+  post(6.6f, 5.9f, true, 280.0f, true);
   // Brackets in the lane.
-  bracket({17.5f, 4.6f, -lane_wall_m}, {0, 0, 1}, 420.0f, true);
-  bracket({28.0f, 4.6f, lane_wall_m}, {0, 0, -1}, 420.0f, true);
-  bracket({40.5f, 4.6f, -lane_wall_m}, {0, 0, 1}, 420.0f, false);
-  bracket({52.0f, 4.6f, lane_wall_m}, {0, 0, -1}, 420.0f, false);
-  bracket({-18.5f, 4.6f, lane_wall_m}, {0, 0, -1}, 420.0f, true);
-  bracket({-30.0f, 4.6f, -lane_wall_m}, {0, 0, 1}, 420.0f, false);
-  bracket({-42.0f, 4.6f, lane_wall_m}, {0, 0, -1}, 420.0f, false);
-  bracket({-53.0f, 4.6f, -lane_wall_m}, {0, 0, 1}, 420.0f, false);
+  bracket({17.5f, 4.6f, -lane_wall_m}, {0, 0, 1}, 210.0f, true);
+  bracket({28.0f, 4.6f, lane_wall_m}, {0, 0, -1}, 210.0f, true);
+  bracket({40.5f, 4.6f, -lane_wall_m}, {0, 0, 1}, 210.0f, false);
+  bracket({52.0f, 4.6f, lane_wall_m}, {0, 0, -1}, 210.0f, false);
+  bracket({-18.5f, 4.6f, lane_wall_m}, {0, 0, -1}, 210.0f, true);
+  bracket({-30.0f, 4.6f, -lane_wall_m}, {0, 0, 1}, 210.0f, false);
+  bracket({-42.0f, 4.6f, lane_wall_m}, {0, 0, -1}, 210.0f, false);
+  bracket({-53.0f, 4.6f, -lane_wall_m}, {0, 0, 1}, 210.0f, false);
 }
 
 }  // namespace petrichor::city

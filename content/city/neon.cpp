@@ -11,10 +11,10 @@ void glyph(Builder& b, Glow colour, const NeonGlyph& g, float x, float y, float 
   for (const std::vector<glm::vec2>& stroke : g.strokes) {
     std::vector<glm::vec3> path;
     for (const glm::vec2& p : stroke) path.emplace_back(x + p.x * height_m, y + p.y * height_m, stand_off_m);
-    b.tube(glow(colour), path, tube_m, 5);
+    b.tube(glow(colour), path, tube_m, 4);
     // The electrode ends turn back into the wall.
     for (const glm::vec3& end : {path.front(), path.back()}) {
-      b.cylinder(plain(glm::vec3(0.03f), Finish::rubber), {end.x, end.y, 0.0f}, {end.x, end.y, stand_off_m}, tube_m * 0.8f, tube_m * 0.8f, 4);
+      b.cylinder(plain(glm::vec3(0.03f), Finish::rubber), {end.x, end.y, 0.0f}, {end.x, end.y, stand_off_m}, tube_m * 0.8f, tube_m * 0.8f, 3);
     }
   }
 }
@@ -45,7 +45,7 @@ void neon_column(Builder& b, Glow colour, const std::string& capitals, float x, 
 }
 
 void neon_line(Builder& b, Glow colour, std::span<const glm::vec3> path, float tube_m, bool closed) {
-  b.tube(glow(colour), path, tube_m, 5, closed);
+  b.tube(glow(colour), path, tube_m, 4, closed);
 }
 
 }  // namespace petrichor::city

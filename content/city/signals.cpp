@@ -68,7 +68,7 @@ void add_signals(Scene& scene) {
     add_node(scene, name, parent, p.red ? red : green, frame);
     const float y = p.red ? 3.05f : 2.47f;
     add_light(scene, name + "_light", parent, glm::vec3(frame * glm::vec4(0, y, 0.62f, 1)),
-              {p.red ? glm::vec3(1.0f, 0.04f, 0.02f) : glm::vec3(0.05f, 1.0f, 0.45f), p.red ? 42.0f : 34.0f, 16.0f, 0, 0, false, 0.1f});
+              {p.red ? glm::vec3(1.0f, 0.04f, 0.02f) : glm::vec3(0.05f, 1.0f, 0.45f), p.red ? 34.0f : 26.0f, 16.0f, 0, 0, false, 0.1f});
   }
 }
 
@@ -81,14 +81,14 @@ void add_wires(Scene& scene) {
   mesh.name = "overhead_wires";
   Builder b(mesh);
   for (float z : spans) {  // span wires from wall to wall
-    b.tube(wire, catenary({-main_wall_m, high, z}, {main_wall_m, high + 0.2f, z}, 0.45f, 8), 0.010f, 4);
+    b.tube(wire, catenary({-main_wall_m, high, z}, {main_wall_m, high + 0.2f, z}, 0.45f, 8), 0.010f, 3);
     for (float x : {-main_wall_m, main_wall_m}) b.cylinder(plain(glm::vec3(0.04f), Finish::iron), {x, high, z}, {x - std::copysign(0.12f, x), high, z}, 0.05f, 0.02f, 6);
     mark_drip(scene, parent, glm::translate(glm::mat4(1.0f), {-3.0f, high - 0.38f, z}), 6.0f, 0.02f, 1.0f);
   }
   for (std::size_t k = 0; k + 1 < spans.size(); ++k) {  // the trolley bus's two pairs
     for (float x : {-1.75f, -1.15f, 1.15f, 1.75f}) {
       const float y = high - 0.42f;
-      b.tube(wire, catenary({x, y, spans[k]}, {x, y, spans[k + 1]}, 0.18f, 6), 0.008f, 4);
+      b.tube(wire, catenary({x, y, spans[k]}, {x, y, spans[k + 1]}, 0.18f, 6), 0.008f, 3);
       b.cylinder(wire, {x, y, spans[k]}, {x, y + 0.12f, spans[k]}, 0.03f, 0.02f, 5);
     }
   }
@@ -102,13 +102,13 @@ void add_wires(Scene& scene) {
   for (float x : {13.5f, 18.5f, 23.5f, -13.0f, -18.0f, -23.0f}) {
     const float skew = x > 0 ? 2.2f : -2.2f;
     const auto line = catenary({x, 5.6f, -lane_wall_m}, {x + skew, 5.9f, lane_wall_m}, 0.9f, 14);
-    f.tube(wire, line, 0.008f, 4);
+    f.tube(wire, line, 0.008f, 3);
     for (std::size_t k = 1; k + 1 < line.size(); ++k) {
-      f.cylinder(wire, line[k] - glm::vec3(0, 0.05f, 0), line[k], 0.018f, 0.014f, 5);
-      f.cylinder(glow(Glow::candle), line[k] - glm::vec3(0, 0.09f, 0), line[k] - glm::vec3(0, 0.045f, 0), 0.036f, 0.024f, 6);
-      f.cylinder(glow(Glow::candle), line[k] - glm::vec3(0, 0.125f, 0), line[k] - glm::vec3(0, 0.09f, 0), 0.008f, 0.036f, 6, true);
+      f.cylinder(wire, line[k] - glm::vec3(0, 0.05f, 0), line[k], 0.018f, 0.014f, 4);
+      f.cylinder(glow(Glow::candle), line[k] - glm::vec3(0, 0.09f, 0), line[k] - glm::vec3(0, 0.045f, 0), 0.036f, 0.024f, 5);
+      f.cylinder(glow(Glow::candle), line[k] - glm::vec3(0, 0.125f, 0), line[k] - glm::vec3(0, 0.09f, 0), 0.008f, 0.036f, 5);
     }
-    if (number % 3 != 2) add_light(scene, "festoon_light_" + std::to_string(number), parent, line[7] - glm::vec3(0, 0.2f, 0), {{1.0f, 0.60f, 0.24f}, 75.0f, 15.0f, 0, 0, false, 0.6f});
+    if (number % 3 != 2) add_light(scene, "festoon_light_" + std::to_string(number), parent, line[7] - glm::vec3(0, 0.2f, 0), {{1.0f, 0.60f, 0.24f}, 60.0f, 15.0f, 0, 0, false, 0.6f});
     ++number;
   }
   add_mesh_node(scene, parent, std::move(bulbs));

@@ -150,21 +150,17 @@ StandingWater flood_streets() {
   for (std::size_t start = 0; start < seen.size(); ++start) {
     if (seen[start] || !stands(start)) continue;
     Basin basin;
-    basin.minimum_m = glm::vec2(1e9f);
-    basin.maximum_m = glm::vec2(-1e9f);
     basin.level_m = w.level_m[start];
     std::vector<std::size_t> stack{start};
+    std::vector<std::size_t> cells;
     seen[start] = 1;
     while (!stack.empty()) {
       const std::size_t k = stack.back();
       stack.pop_back();
       const int i = static_cast<int>(k % static_cast<std::size_t>(n));
       const int j = static_cast<int>(k / static_cast<std::size_t>(n));
-      const glm::vec2 c(centre(i), centre(j));
-      basin.minimum_m = glm::min(basin.minimum_m, c - 0.5f * water_cell_m);
-      basin.maximum_m = glm::max(basin.maximum_m, c + 0.5f * water_cell_m);
+      cells.push_back(k);
       basin.maximum_depth_m = std::max(basin.maximum_depth_m, w.level_m[k] - w.ground_m[k]);
-      basin.area_m2 += water_cell_m * water_cell_m;
       for (const glm::ivec2& d : around) {
         if (!inside(i + d.x, j + d.y)) continue;
         const std::size_t m = at(i + d.x, j + d.y);
@@ -172,6 +168,17 @@ StandingWater flood_streets() {
         seen[m] = 1;
         stack.push_back(m);
       }
+    }
+    // Some of it has soaked away: the sheet lies below the spill.
+    const float lowered = 0.35f * basin.maximum_depth_m;
+    basin = {glm::vec2(1e9f), glm::vec2(-1e9f), basin.maximum_depth_m - lowered, 0.0f, basin.level_m - lowered};
+    for (std::size_t k : cells) {
+      w.level_m[k] = std::max(w.ground_m[k], basin.level_m);
+      if (!stands(k)) continue;
+      const glm::vec2 c(centre(static_cast<int>(k % static_cast<std::size_t>(n))), centre(static_cast<int>(k / static_cast<std::size_t>(n))));
+      basin.minimum_m = glm::min(basin.minimum_m, c - 0.5f * water_cell_m);
+      basin.maximum_m = glm::max(basin.maximum_m, c + 0.5f * water_cell_m);
+      basin.area_m2 += water_cell_m * water_cell_m;
     }
     if (basin.area_m2 > 0.3f) w.basins.push_back(basin);
   }

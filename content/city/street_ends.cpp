@@ -114,11 +114,11 @@ void backdrop(Scene& scene, int parent) {
     Builder b(mesh);
     const float fx = (quarter & 1) ? 1.0f : -1.0f;
     const float fz = (quarter & 2) ? 1.0f : -1.0f;
-    const glm::vec3 lo(std::min(fx * 17.0f, fx * 190.0f), -0.02f, std::min(fz * 15.0f, fz * 190.0f));
-    const glm::vec3 hi(std::max(fx * 17.0f, fx * 190.0f), -0.02f, std::max(fz * 15.0f, fz * 190.0f));
+    const glm::vec3 lo(std::min(fx * 17.0f, fx * 118.0f), -0.02f, std::min(fz * 15.0f, fz * 118.0f));
+    const glm::vec3 hi(std::max(fx * 17.0f, fx * 118.0f), -0.02f, std::max(fz * 15.0f, fz * 118.0f));
     b.quad(plain(glm::vec3(0.04f), Finish::wet_stone), {lo.x, lo.y, hi.z}, {hi.x, lo.y, hi.z}, {hi.x, lo.y, lo.z}, {lo.x, lo.y, lo.z});
     for (int k = 0; k < 26; ++k) {
-      const float ring = 82.0f + 26.0f * static_cast<float>(k % 4) + dice.between(0.0f, 10.0f);
+      const float ring = 80.0f + 9.0f * static_cast<float>(k % 4) + dice.between(0.0f, 6.0f);
       const float t = 1.5707963f * (static_cast<float>(k) + dice.next()) / 26.0f;
       const glm::vec3 at(fx * ring * std::cos(t), 0.0f, fz * ring * std::sin(t));
       if (std::abs(at.x - 3.5f) < 22.0f && at.z < -60.0f) continue;  // the church's own square

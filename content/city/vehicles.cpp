@@ -11,12 +11,12 @@ namespace {
 
 void head_lights(Scene& scene, int parent, const std::string& name, const glm::mat4& frame, const CarShape& shape, bool shadow) {
   const auto at = [&](glm::vec3 p) { return glm::vec3(frame * glm::vec4(p, 1.0f)); };
-  const glm::vec3 beam = glm::normalize(glm::mat3(frame) * glm::vec3(0.02f, -0.045f, 1.0f));
+  const glm::vec3 beam = glm::normalize(glm::mat3(frame) * glm::vec3(0.03f, -0.11f, 1.0f));
   const float front = 0.5f * shape.length_m;
   for (float x : {-0.52f, 0.52f}) {
     add_light(scene, name + (x < 0 ? "_head_right" : "_head_left"), parent, at({x, 0.58f, front + 0.08f}),
-              {{1.0f, 0.88f, 0.68f}, 2600.0f, 45.0f, 7.0f, 27.0f, shadow && x < 0, 0.08f}, beam);
-    add_light(scene, name + (x < 0 ? "_tail_right" : "_tail_left"), parent, at({x, 0.60f, -front - 0.12f}), {{1.0f, 0.035f, 0.02f}, 9.0f, 9.0f, 0, 0, false, 0.07f});
+              {{1.0f, 0.88f, 0.68f}, 1100.0f, 32.0f, 5.0f, 20.0f, shadow && x < 0, 0.08f}, beam);
+    add_light(scene, name + (x < 0 ? "_tail_right" : "_tail_left"), parent, at({x, 0.60f, -front - 0.12f}), {{1.0f, 0.035f, 0.02f}, 7.0f, 9.0f, 0, 0, false, 0.07f});
   }
 }
 

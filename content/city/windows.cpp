@@ -10,13 +10,13 @@ namespace {
 
 const glm::vec3 railing_iron(0.025f);
 
+// Only what can be seen from below: windows are most of the town's triangles.
 void surround(Builder& b, const Paint& trim, float w, float h) {
   const float band = 0.13f;
   const float proud = 0.045f;
-  const unsigned upright = face_front | face_sides;
-  b.box(trim, {-0.5f * w - band, 0.0f, 0.0f}, {-0.5f * w, h + band, proud}, upright | face_top);
-  b.box(trim, {0.5f * w, 0.0f, 0.0f}, {0.5f * w + band, h + band, proud}, upright | face_top);
-  b.box(trim, {-0.5f * w, h, 0.0f}, {0.5f * w, h + band, proud}, face_front | face_bottom | face_top);
+  b.box(trim, {-0.5f * w - band, 0.0f, 0.0f}, {-0.5f * w, h + band, proud}, face_front | face_sides);
+  b.box(trim, {0.5f * w, 0.0f, 0.0f}, {0.5f * w + band, h + band, proud}, face_front | face_sides);
+  b.box(trim, {-0.5f * w, h, 0.0f}, {0.5f * w, h + band, proud}, face_front | face_bottom);
 }
 
 void head_piece(Builder& b, const Paint& trim, Head head, float w, float h) {
@@ -103,22 +103,24 @@ void window(Builder& parent, const Style& style, float x, float y, float w, floa
   const float f = 0.065f;
   const float zf = -depth + 0.05f;
   const float zp = -depth;
-  b.box(frame, {l, 0, zp}, {l + f, h, zf}, face_front | face_right);
-  b.box(frame, {r - f, 0, zp}, {r, h, zf}, face_front | face_left);
-  b.box(frame, {l + f, 0, zp}, {r - f, f, zf}, face_front | face_top);
-  b.box(frame, {l + f, h - f, zp}, {r - f, h, zf}, face_front | face_bottom);
+  // High above the street the bars' flanks are less than a pixel.
+  const bool high_up = y > 7.0f;
+  const unsigned flanks = high_up ? 0u : ~0u;
+  b.box(frame, {l, 0, zp}, {l + f, h, zf}, face_front | (face_right & flanks));
+  b.box(frame, {r - f, 0, zp}, {r, h, zf}, face_front | (face_left & flanks));
+  b.box(frame, {l + f, 0, zp}, {r - f, f, zf}, face_front | (face_top & flanks));
+  b.box(frame, {l + f, h - f, zp}, {r - f, h, zf}, face_front | (face_bottom & flanks));
   const float transom = h > 1.5f ? 0.68f * h : 0.5f * h;
-  b.box(frame, {-0.03f, f, zp}, {0.03f, h - f, zf}, face_front | face_sides);
-  b.box(frame, {l + f, transom - 0.025f, zp}, {r - f, transom + 0.025f, zf - 0.008f}, face_front | face_top | face_bottom);
+  b.box(frame, {-0.03f, f, zp}, {0.03f, h - f, zf}, face_front | (face_sides & flanks));
+  b.box(frame, {l + f, transom - 0.025f, zp}, {r - f, transom + 0.025f, zf - 0.008f}, face_front | (face_bottom & flanks));
   const bool lit = dice.chance(style.lit);
   const int tile = lit ? dice.below(lit_panes) : lit_panes + dice.below(dark_panes);
   UvRect rect = pane_rect(tile);
   if (dice.chance(0.5f)) std::swap(rect.minimum.x, rect.maximum.x);
-  const float dim = lit ? 1.0f : 1.0f;
-  b.picture(Mat::panes, glm::vec3(dim), rect, {l, 0, zp}, {r, 0, zp}, {r, h, zp}, {l, h, zp});
+  b.picture(Mat::panes, glm::vec3(1.0f), rect, {l, 0, zp}, {r, 0, zp}, {r, h, zp}, {l, h, zp});
   // Sill, falling outwards.
   const std::array<glm::vec2, 4> sill{{{0.0f, -0.10f}, {0.11f, -0.09f}, {0.12f, -0.02f}, {-depth + 0.04f, 0.012f}}};
-  b.moulding(trim, sill, l - 0.09f, r + 0.09f);
+  b.moulding(trim, sill, l - 0.09f, r + 0.09f, 0.0f, 0.0f, !high_up);
   if (head != Head::none && head != Head::arch) surround(b, trim, w, h);
   head_piece(b, trim, head, w, h);
   if (shutters) {
@@ -165,17 +167,17 @@ void balcony(Builder& parent, const Style& style, float x, float y, float width)
     b.box(iron, {c - 0.015f, rail, 0.0f}, {c + 0.015f, rail + 0.035f, zr}, face_sides | face_top | face_bottom);
     b.box(iron, {c - 0.01f, 0.09f, 0.0f}, {c + 0.01f, 0.115f, zr}, face_sides | face_top | face_bottom);
   }
-  const int bars = static_cast<int>(2.0f * xr / 0.14f);
+  const int bars = static_cast<int>(2.0f * xr / 0.16f);
   for (int k = 0; k <= bars; ++k) {
     const float c = -xr + 2.0f * xr * static_cast<float>(k) / static_cast<float>(bars);
     const bool post = k == 0 || k == bars;
     const float t = post ? 0.022f : 0.009f;
-    b.box(iron, {c - t, 0.0f, zr - t}, {c + t, rail, zr + t}, face_front | face_sides | face_back);
+    b.box(iron, {c - t, 0.0f, zr - t}, {c + t, rail, zr + t}, post ? face_front | face_sides | face_back : face_front | face_sides);
   }
   for (float s : {-1.0f, 1.0f}) {
-    for (int k = 1; k < 5; ++k) {
-      const float z = zr * static_cast<float>(k) / 5.0f;
-      b.box(iron, {s * xr - 0.009f, 0.1f, z - 0.009f}, {s * xr + 0.009f, rail, z + 0.009f}, face_sides | face_front | face_back);
+    for (int k = 1; k < 4; ++k) {
+      const float z = zr * static_cast<float>(k) / 4.0f;
+      b.box(iron, {s * xr - 0.009f, 0.1f, z - 0.009f}, {s * xr + 0.009f, rail, z + 0.009f}, face_sides | face_front);
     }
   }
 }
