@@ -30,8 +30,8 @@ std::vector<LightGpu> visible_lights(const Frame&);
 
 class FrameGpu {
  public:
-  // After finish_frame. Uploads and binds constants (FRAME_UNIFORMS_BINDING), lights (LIGHTS_BINDING) and, with
-  // frame.scene, instances (INSTANCES_BINDING). Passes may run then.
+  // After finish_frame. Uploads and binds constants (FRAME_UNIFORMS_BINDING), lights (LIGHTS_BINDING); with
+  // frame.scene, places its instances. Passes may run then.
   void upload(const Frame&);
 
  private:

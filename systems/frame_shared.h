@@ -18,7 +18,6 @@ using uint = std::uint32_t;
 // Fixed binding points. Textures and images are bound per pass.
 #define FRAME_UNIFORMS_BINDING 0  // uniform block FrameBlock { FrameUniforms frame; }
 #define LIGHTS_BINDING 0          // buffer, LightGpu lights[]
-#define INSTANCES_BINDING 1       // buffer, InstanceGpu instances[]
 #define OCCLUSION_UNIFORMS_BINDING 1  // uniform block, OcclusionUniforms (systems/occlusion)
 #define OCCLUSION_UNIT 15         // texture unit of the occlusion map in shaders that include occlusion.glsl
 
@@ -56,11 +55,6 @@ struct LightGpu {
   vec4 cone_shadow;       // spot attenuation scale and offset (KHR_lights_punctual), z: shadow slot or -1, w: lights rain (0/1)
 };
 
-struct InstanceGpu {
-  mat4 model;   // object -> camera-relative world
-  vec4 normal0, normal1, normal2;  // columns of the normal matrix
-};
-
 // The map of shelter: scene depth along the fall direction of the precipitation.
 struct OcclusionUniforms {
   mat4 map_from_relative;  // camera-relative world -> xy texture coordinates in 0..1, z metres along the fall
@@ -71,7 +65,6 @@ struct OcclusionUniforms {
 #ifdef __cplusplus
 static_assert(sizeof(FrameUniforms) == 4 * 64 + 10 * 16);
 static_assert(sizeof(LightGpu) == 64);
-static_assert(sizeof(InstanceGpu) == 112);
 static_assert(sizeof(OcclusionUniforms) == 96);
 }  // namespace petrichor
 #endif

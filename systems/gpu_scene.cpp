@@ -155,9 +155,7 @@ GpuScene::GpuScene() : impl(std::make_unique<Impl>()) {
   impl->positions_only = new_vertex_array();
   for (const GLuint array : {GLuint{impl->all_attributes}, GLuint{impl->positions_only}}) {
     attribute(array, 0, 3, GL_FLOAT, false, 0, 0);
-    glEnableVertexArrayAttrib(array, 6);
-    glVertexArrayAttribIFormat(array, 6, 1, GL_UNSIGNED_INT, 0);
-    glVertexArrayAttribBinding(array, 6, 2);
+    for (GLuint row = 0; row < 3; ++row) attribute(array, 6 + row, 4, GL_FLOAT, false, row * sizeof(glm::vec4), 2);
     glVertexArrayBindingDivisor(array, 2, 1);
   }
   const GLuint all = impl->all_attributes;

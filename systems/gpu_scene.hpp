@@ -43,13 +43,13 @@ enum MaterialVariant : unsigned {
   material_variants = 17,
 };
 
-// Instance matrices (relative to the camera) into INSTANCES_BINDING, and the boxes that draw_instances culls.
-// FrameGpu::upload calls it; once a frame, before the first draw_instances.
+// Places the instances and the boxes that draw_instances culls relative to the frame's camera. FrameGpu::upload calls
+// it; once a frame, before the first draw_instances, and again after a pass that drew from elsewhere.
 void upload_instances(GpuScene&, const Frame&);
 
 // Draws the frame's instances that touch the frustum of clip_from_relative (camera-relative world -> clip, depth
-// 0..1), grouped by mesh and material and instanced. Binds vertex arrays, the instance buffer and, for opaque and
-// blended, material textures and uniforms; sets glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE), glFrontFace and,
+// 0..1), grouped by mesh and material and instanced. Binds vertex arrays and, for opaque and blended, material
+// textures and uniforms; sets glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE), glFrontFace and,
 // with materials, GL_CULL_FACE. The caller binds program, framebuffer and depth state.
 // by_variant: material_variants programs, of which each batch uses its own; empty: the bound program draws all.
 // Vertex shaders include "systems/geometry/vertex.glsl". Returns triangles drawn.

@@ -58,13 +58,9 @@ void upload_instances(GpuScene& scene, const Frame& frame) {
     glm::mat4 m = in.matrix;
     m[3] = glm::vec4(glm::vec3(glm::dvec3(in.matrix[3]) - frame.camera.position_m), 1.0f);
     const glm::mat3 linear(m);
-    // Cofactors are the inverse transpose times the determinant: no division, so a flattened object is well defined.
-    const glm::mat3 cofactors(glm::cross(linear[1], linear[2]), glm::cross(linear[2], linear[0]),
-                              glm::cross(linear[0], linear[1]));
-    const float determinant = glm::dot(linear[0], cofactors[0]);
-    const float sign = determinant < 0.0f ? -1.0f : 1.0f;
-    s.instances.push_back({m, glm::vec4(cofactors[0] * sign, 0.0f), glm::vec4(cofactors[1] * sign, 0.0f),
-                           glm::vec4(cofactors[2] * sign, 0.0f)});
+    const float determinant = glm::determinant(linear);
+    const glm::mat4 rows = glm::transpose(m);
+    s.instances.push_back({rows[0], rows[1], rows[2]});
     assert(in.model < s.models.size() && in.mesh < s.models[in.model].size());
     const SceneMesh& mesh = s.models[in.model][in.mesh];
     const glm::mat3 absolute(glm::abs(linear[0]), glm::abs(linear[1]), glm::abs(linear[2]));
@@ -74,8 +70,6 @@ void upload_instances(GpuScene& scene, const Frame& frame) {
                          static_cast<std::uint32_t>(i), determinant < 0.0f, in.casts_shadow});
     }
   }
-  upload(s.instance_buffer, std::span<const InstanceGpu>(s.instances));
-  glBindBufferBase(GL_SHADER_STORAGE_BUFFER, INSTANCES_BINDING, s.instance_buffer.id);
 }
 
 std::uint64_t draw_instances(GpuScene& scene, const Frame& frame, const glm::mat4& clip_from_relative, DrawWhat what,
@@ -139,20 +133,20 @@ std::uint64_t draw_instances(GpuScene& scene, const Frame& frame, const glm::mat
                             static_cast<GLuint>(s.stream.size())});
       ++batches.back().count;
     }
-    s.stream.push_back(item.instance);
+    s.stream.push_back(s.instances[item.instance]);
     triangles += chunk.index_count / 3;
     last = &item;
   }
 
-  const std::size_t stream_at = stream(s.stream_buffer, s.stream_offset, s.stream.data(), s.stream.size() * 4);
+  const std::size_t stream_at = stream(s.stream_buffer, s.stream_offset, s.stream.data(),
+                                       s.stream.size() * sizeof(InstanceRows));
   const std::size_t commands_at =
       stream(s.command_buffer, s.command_offset, s.commands.data(), s.commands.size() * sizeof(DrawCommand));
   glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
   const GLuint array = with_materials ? s.all_attributes : s.positions_only;
-  glVertexArrayVertexBuffer(array, 2, s.stream_buffer.id, static_cast<GLintptr>(stream_at), 4);
+  glVertexArrayVertexBuffer(array, 2, s.stream_buffer.id, static_cast<GLintptr>(stream_at), sizeof(InstanceRows));
   glBindVertexArray(array);
   glBindBuffer(GL_DRAW_INDIRECT_BUFFER, s.command_buffer.id);
-  glBindBufferBase(GL_SHADER_STORAGE_BUFFER, INSTANCES_BINDING, s.instance_buffer.id);
   for (const Batch& batch : batches) {
     glFrontFace(batch.state & 1u ? GL_CW : GL_CCW);
     if (with_materials) {

@@ -43,6 +43,11 @@ struct SceneItem {
   bool casts_shadow;
 };
 
+// Rows of object -> camera-relative world; the fourth is (0, 0, 0, 1).
+struct InstanceRows {
+  glm::vec4 x, y, z;
+};
+
 struct DrawCommand {  // DrawElementsIndirectCommand
   GLuint count, instance_count, first_index;
   GLint base_vertex;
@@ -51,8 +56,8 @@ struct DrawCommand {  // DrawElementsIndirectCommand
 
 struct GpuScene::Impl {
   bool software = false;
-  Buffer position_buffer, attribute_buffer, index_buffer, material_buffer, instance_buffer;
-  Buffer stream_buffer, command_buffer;  // per draw_instances: instance numbers; indirect commands
+  Buffer position_buffer, attribute_buffer, index_buffer, material_buffer;
+  Buffer stream_buffer, command_buffer;  // per draw_instances: instances, indirect commands
   std::size_t stream_offset = 0, command_offset = 0;
   std::size_t vertex_count = 0, index_count = 0;
   VertexArray all_attributes, positions_only;
@@ -68,14 +73,14 @@ struct GpuScene::Impl {
   std::vector<std::byte> material_bytes;
 
   std::vector<SceneItem> items;  // of the frame
-  std::vector<InstanceGpu> instances;
+  std::vector<InstanceRows> instances;
   struct Visible {
     std::uint64_t key;
     std::uint32_t item;
   };
   std::vector<Visible> visible;
   std::vector<float> chunk_distance;
-  std::vector<std::uint32_t> stream;
+  std::vector<InstanceRows> stream;
   std::vector<DrawCommand> commands;
 
   GLuint sampler(const TextureUse&);

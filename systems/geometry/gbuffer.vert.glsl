@@ -16,8 +16,7 @@ void main() {
   vertex_position = p;
   vertex_normal = vertex_normal_matrix() * unit_from_octahedral(in_normal);
   // A mirrored instance turns the handedness of its tangent frame.
-  mat3 model = mat3(instances[in_instance].model);
-  vertex_tangent = vec4(model * in_tangent.xyz, in_tangent.w * (determinant(model) < 0.0 ? -1.0 : 1.0));
+  vertex_tangent = vec4(vertex_model_matrix() * in_tangent.xyz, in_tangent.w * vertex_handedness());
   vertex_uv = vec4(in_uv0, in_uv1);
   vertex_colour = in_colour;
   gl_Position = frame.view_projection * vec4(p, 1.0);
