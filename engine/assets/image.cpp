@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <fstream>
 #include <random>
+#include <type_traits>
 
 namespace petrichor {
 namespace {
@@ -56,17 +57,24 @@ struct TemporaryFile {
   }
 };
 
+// Reads into texels of four, in place: a second copy of a large image could be a gigabyte.
 template <class T>
-void spread(std::vector<std::uint8_t>& pixels, const std::vector<T>& read, std::size_t texels, int channels, T opaque) {
+bool read_texels(OIIO::ImageInput& input, OIIO::TypeDesc type, int channels, T opaque, std::size_t texels,
+                 std::vector<std::uint8_t>& pixels) {
   pixels.resize(texels * 4 * sizeof(T));
+  if (!input.read_image(0, 0, 0, channels, type, pixels.data(), 4 * sizeof(T))) return false;
   for (std::size_t i = 0; i < texels; ++i) {
-    const T* in = read.data() + i * static_cast<std::size_t>(channels);
-    const T out[4] = {in[0], channels >= 3 ? in[1] : in[0], channels >= 3 ? in[2] : in[0],
-                      channels == 2   ? in[1]
-                      : channels >= 4 ? in[3]
-                                      : opaque};
+    T in[4];
+    std::memcpy(in, pixels.data() + i * sizeof(in), sizeof(in));
+    if constexpr (std::is_floating_point_v<T>) {
+      for (T& value : in) value = std::isfinite(value) ? value : T{0};
+    }
+    const bool colour = channels >= 3;
+    const T alpha = channels == 2 ? in[1] : channels == 4 ? in[3] : opaque;
+    const T out[4] = {in[0], colour ? in[1] : in[0], colour ? in[2] : in[0], alpha};
     std::memcpy(pixels.data() + i * sizeof(out), out, sizeof(out));
   }
+  return true;
 }
 
 Result<Image> read_pixels(OIIO::ImageInput& input, const std::string& name) {
@@ -89,19 +97,9 @@ Result<Image> read_pixels(OIIO::ImageInput& input, const std::string& name) {
   image.height = spec.height;
   image.is_float = is_float;
   image.name = name;
-  bool done = false;
-  if (is_float) {
-    std::vector<float> read(texels * static_cast<std::size_t>(channels));
-    done = input.read_image(0, 0, 0, channels, OIIO::TypeDesc::FLOAT, read.data());
-    for (float& value : read) {
-      if (!std::isfinite(value)) value = 0.0f;
-    }
-    spread(image.pixels, read, texels, channels, 1.0f);
-  } else {
-    std::vector<std::uint8_t> read(texels * static_cast<std::size_t>(channels));
-    done = input.read_image(0, 0, 0, channels, OIIO::TypeDesc::UINT8, read.data());
-    spread(image.pixels, read, texels, channels, std::uint8_t{255});
-  }
+  const bool done = is_float
+                        ? read_texels(input, OIIO::TypeDesc::FLOAT, channels, 1.0f, texels, image.pixels)
+                        : read_texels(input, OIIO::TypeDesc::UINT8, channels, std::uint8_t{255}, texels, image.pixels);
   if (!done) return failure(fmt::format("the image cannot be decoded: {}", one_line(input.geterror())));
   return image;
 }
