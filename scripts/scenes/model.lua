@@ -16,7 +16,7 @@ local position, centre, distance, gap = framing.of_box(low, high, { fov_deg = fo
 local near_m = math.min(math.max(gap * 0.25, 0.001), 0.05)
 local camera = world.spawn {
   name = "camera",
-  camera = { vertical_fov_deg = fov_deg, near_m = near_m, exposure_s = 1 / 60 },
+  camera = { vertical_fov_deg = fov_deg, near_m = near_m, exposure_s = 1 / 60, exposure_ev100 = 2 },
   transform = { position_m = position, orientation = look_at(position, centre) },
 }
 
@@ -28,15 +28,17 @@ camera.walker.pitch_deg = math.deg(math.atan(ahead.y, math.sqrt(ahead.x ^ 2 + ah
 
 world.spawn { name = "sky", sky = { ambient = 1 } }
 
--- A model that brings no light gets three: the moon, a warm lamp beside the camera, and one behind the model,
--- against which the rain shows. A lamp of I candela gives I / d^2 lux at d metres: 12 lux on a grey surface (0.18)
--- is 0.7 cd/m2, which a camera at EV 3 shows as middle grey.
+-- The moon through thin cloud, twenty times as bright as it is, so that what no lamp reaches still has a shape.
+world.spawn {
+  name = "moon",
+  light = { kind = "directional", colour = { 0.62, 0.75, 1 }, intensity_cd = 5, casts_shadow = true },
+  transform = { orientation = look_at({ 3, 5, -1 }, { 0, 0, 0 }) },
+}
+
+-- A model that brings no light gets a warm lamp beside the camera, and one behind the model, against which the
+-- rain shows. A lamp of I candela gives I / d^2 lux at d metres: 7 lux on a grey surface (0.18) is 0.4 cd/m2,
+-- which a camera at EV 2 shows as a little under middle grey (0.5 cd/m2).
 if model:count("light") == 0 then
-  world.spawn {
-    name = "moon",
-    light = { kind = "directional", colour = { 0.62, 0.75, 1 }, intensity_cd = 0.6, casts_shadow = true },
-    transform = { orientation = look_at({ 3, 5, -2 }, { 0, 0, 0 }) },
-  }
   local function lamp(name, offset, lux, colour, casts_shadow)
     local at = centre + offset * distance
     local d2 = offset.x ^ 2 + offset.y ^ 2 + offset.z ^ 2
@@ -51,12 +53,14 @@ if model:count("light") == 0 then
       transform = { position_m = at },
     }
   end
-  lamp("key lamp", vec3(-0.25, 0.8, 0.95), 12, { 1, 0.82, 0.6 }, true)
-  lamp("back lamp", vec3(-0.55, 0.6, -0.8), 10, { 1, 0.7, 0.4 }, false)
+  lamp("key lamp", vec3(-0.25, 0.8, 0.95), 7, { 1, 0.82, 0.6 }, true)
+  lamp("back lamp", vec3(-0.62, 0.34, -0.7), 16, { 1, 0.7, 0.4 }, false)
 end
 
 local sky_weather = weather.spawn("rain")
 sky_weather.emitter.rain_mm_per_hour = 20
+-- Mist hides what is far; a model that is seen from far away stands in clearer air.
+sky_weather.fog.extinction_per_km = math.min(2, 200 / distance)
 
 for key, name in pairs { "drizzle", "rain", "downpour", "dry" } do
   on("key:" .. key, function() weather.change(sky_weather, name, 3) end)

@@ -126,7 +126,7 @@ TEST_F(OwnScripts, ModelsAreFramedAndLit) {
   registry.clear();
   with_light = true;
   run_script("scenes/model.lua");
-  EXPECT_EQ(registry.size<Light>(), 1u);
+  EXPECT_EQ(registry.size<Light>(), 2u);  // its own and the moon
 }
 
 TEST_F(OwnScripts, TheWholeModelIsInThePicture) {
