@@ -45,8 +45,8 @@ int lights_of_cell(vec3 middle, float radius, out uvec4 indices) {
       }
     }
   }
-  indices = uvec4(chosen[0] | chosen[1] << 16u, chosen[2] | chosen[3] << 16u, chosen[4] | chosen[5] << 16u,
-                  chosen[6] | chosen[7] << 16u);
+  indices = uvec4(0u);
+  for (int i = 0; i < RAIN_CELL_LIGHTS; ++i) indices[i >> 1] |= chosen[i] << (16u * uint(i & 1));
   return lights_here;
 }
 

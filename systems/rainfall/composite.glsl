@@ -32,7 +32,7 @@ vec4 rain_over(ivec2 pixel, uint units, uvec3 lamp) {
 #endif
   // The mean of the drops' lamplight, weighted by their optical depths; (1 - exp(-d)) / d without cancelling.
   float per_depth = depth > 1e-3 ? opacity / depth : 1.0 - 0.5 * depth;
-  return vec4(around * opacity + vec3(lamp) * (per_depth / (RAIN_RADIANCE_ONE * frame.lens.w)), transmittance);
+  return vec4(around * opacity + vec3(lamp) * (per_depth / (float(RAIN_RADIANCE_ONE) * frame.lens.w)), transmittance);
 }
 
 #endif

@@ -271,6 +271,7 @@ std::vector<PassOffer> rainfall_passes() {
         offers[1].shaders[variant(name, scene, lamps)] = {{std::string(file)}, defines};
       };
       add("splat", "systems/rainfall/rain_splat.comp.glsl");
+      defines.push_back("SOFTWARE");
       add("drops", "systems/rainfall/rain_drops.comp.glsl");
       add("lines", "systems/rainfall/rain_lines.comp.glsl");
       defines.push_back("CAPSULES");
@@ -285,10 +286,10 @@ std::vector<PassOffer> rainfall_passes() {
   offers[2].shaders = {{"composite", {composite_file, {}}}, {"composite_environment", {composite_file, {"ENVIRONMENT"}}}};
   const std::vector<std::string> raster_files{"systems/rainfall/rain_composite.vert.glsl",
                                               "systems/rainfall/rain_composite.frag.glsl"};
-  offers[2].shaders["raster"] = {raster_files, {}};
-  offers[2].shaders["raster_lamps"] = {raster_files, {"LAMPS"}};
-  offers[2].shaders["raster_environment"] = {raster_files, {"ENVIRONMENT"}};
-  offers[2].shaders["raster_environment_lamps"] = {raster_files, {"ENVIRONMENT", "LAMPS"}};
+  offers[2].shaders["raster"] = {raster_files, {"SOFTWARE"}};
+  offers[2].shaders["raster_lamps"] = {raster_files, {"LAMPS", "SOFTWARE"}};
+  offers[2].shaders["raster_environment"] = {raster_files, {"ENVIRONMENT", "SOFTWARE"}};
+  offers[2].shaders["raster_environment_lamps"] = {raster_files, {"ENVIRONMENT", "LAMPS", "SOFTWARE"}};
   offers[2].wanted = rains;
   offers[2].execute = [gpu](PassContext& context) { composite(*gpu, context); };
   return offers;

@@ -20,9 +20,15 @@ void main() {
   uint count = drops_of_cell(layer, cell.xyz, key);
 #ifdef LAMPS
   vec3 swept = -layer.velocity_diameter.xyz * frame.camera_velocity_mps.w;
-  uvec4 cell_lights;
+  uvec4 pairs;
   int light_count = lights_of_cell(corner_edge.xyz + 0.5 * corner_edge.w + 0.5 * swept,
-                                   0.5 * length(corner_edge.w + abs(swept)), cell_lights);
+                                   0.5 * length(corner_edge.w + abs(swept)), pairs);
+  // The few lamps stay in registers: reading them again for every drop would cost more than all the rest.
+  LightGpu near_lights[RAIN_CELL_LIGHTS];
+  for (int i = 0; i < RAIN_CELL_LIGHTS; ++i) {
+    near_lights[i] = lights[i < light_count ? (i & 1) == 0 ? pairs[i >> 1] & 0xffffu : pairs[i >> 1] >> 16u : 0u];
+    if (i >= light_count) near_lights[i].intensity_radius.rgb = vec3(0.0);
+  }
 #endif
   uint drawn = 0u;
   for (uint m = 0u; m < count; ++m) {
@@ -34,7 +40,10 @@ void main() {
     drawn += 1u;
     dither_state = bits;
 #ifdef LAMPS
-    drop_light = lamp_light(cell_lights, light_count, s.middle);
+    float distance_to_eye = length(s.middle);
+    vec3 sum = vec3(0.0);
+    for (int i = 0; i < RAIN_CELL_LIGHTS; ++i) sum += lamp_light(near_lights[i], s.middle, distance_to_eye);
+    drop_light = seen_light(sum, distance_to_eye);
 #endif
     vec2 span = abs(s.to - s.from);
     float reach = max(span.x, span.y);

@@ -21,7 +21,11 @@ using glm::vec4;
 #define RAIN_LANES 32            // invocations that share a cell
 #define RAIN_SPLAT_GROUP 64
 #define RAIN_COMMAND_WIDTH 256   // work groups along x of the indirect dispatch
+#ifdef SOFTWARE
+#define RAIN_CELL_LIGHTS 4
+#else
 #define RAIN_CELL_LIGHTS 8
+#endif
 #define RAIN_LENGTHS 7            // lists of streaks by length, a factor of two each (software OpenGL)
 #define RAIN_LISTS 15
 #define RAIN_STREAK_CAPACITY 262144
@@ -29,10 +33,16 @@ using glm::vec4;
 
 // Sums in fixed point. Optical depth: 16 bits a pixel, two rows in a word; 1 is 2^12, so a pixel holds 16 e-folds: a
 // drop adds at most 3.9, all the rain of a downpour to 100 m adds 0.5. Radiance times optical depth: 32 bits, in
-// output units (1 is white); 1 is 2^14, so a pixel holds 262,144 times white.
+// output units (1 is white); 1 is 2^14, so a pixel holds 262,144 times white and one drop at most 2048. In software,
+// where every atomic counts, it is 16 bits in steps of 2^-10: 64 times white, and one drop at most 16.
 #define RAIN_DEPTH_ONE 4096.0
+#ifdef SOFTWARE
+#define RAIN_RADIANCE_ONE 1024.0
+#define RAIN_RADIANCE_MOST 16.0
+#else
 #define RAIN_RADIANCE_ONE 16384.0
-#define RAIN_RADIANCE_MOST 2048.0  // a single drop is clamped here
+#define RAIN_RADIANCE_MOST 2048.0
+#endif
 
 // One layer of one class: a box of cells that may be seen.
 struct RainLayerGpu {
@@ -47,7 +57,7 @@ struct RainLayerGpu {
 struct RainCellGpu {
   vec4 corner_edge;
   uvec4 key;     // of its drops; w: count << 16 | number of lights << 12 | layer
-  uvec4 lights;  // RAIN_CELL_LIGHTS indices of 16 bits
+  uvec4 lights;  // up to 8 indices of 16 bits
 };
 
 // A streak that waits to be drawn (software OpenGL).

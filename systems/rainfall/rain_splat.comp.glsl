@@ -19,7 +19,14 @@ bool draw_drop(RainCellGpu cell, RainLayerGpu layer, uint m) {
   if (!project(closed, place.w, layer.velocity_diameter.xyz, layer.velocity_diameter.w, s) || hidden(s)) return false;
   dither_state = bits;
 #ifdef LAMPS
-  drop_light = lamp_light(cell.lights, int(cell.key.w >> 12u & 15u), s.middle);
+  float distance_to_eye = length(s.middle);
+  vec3 sum = vec3(0.0);
+  int lights_here = int(cell.key.w >> 12u & 15u);
+  for (int i = 0; i < lights_here; ++i) {
+    uint pair = cell.lights[i >> 1];
+    sum += lamp_light(lights[(i & 1) == 0 ? pair & 0xffffu : pair >> 16u], s.middle, distance_to_eye);
+  }
+  drop_light = seen_light(sum, distance_to_eye);
 #endif
   vec2 span = abs(s.to - s.from);
   float reach = max(span.x, span.y);

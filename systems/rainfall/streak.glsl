@@ -64,35 +64,26 @@ bool hidden(Streak s) {
 }
 
 #ifdef LAMPS
-// Output radiance that lamps give a drop; cell_lights holds `count` indices of 16 bits.
-vec3 lamp_light(uvec4 cell_lights, int count, vec3 at) {
-  vec3 sum = vec3(0.0);
-  float distance_to_eye = length(at);
-  for (int i = 0; i < count; ++i) {
-    uint pair = cell_lights[i >> 1];
-    LightGpu light = lights[(i & 1) == 0 ? pair & 0xffffu : pair >> 16u];
-    vec3 from_light = at - light.position_range.xyz;
-    float d2 = max(dot(from_light, from_light), 1e-4);
-    vec3 direction = from_light * inversesqrt(d2);
-    float strength;
-    if (light.direction_kind.w == float(LIGHT_DIRECTIONAL)) {
-      direction = light.direction_kind.xyz;
-      strength = 1.0;
-    } else {
-      float ratio = d2 / (light.position_range.w * light.position_range.w);
-      float window = clamp(1.0 - ratio * ratio, 0.0, 1.0);
-      strength = window * window / max(d2, light.intensity_radius.w * light.intensity_radius.w + 0.0025);
-      if (light.direction_kind.w == float(LIGHT_SPOT)) {
-        float cone = clamp(dot(direction, light.direction_kind.xyz) * light.cone_shadow.x + light.cone_shadow.y, 0.0, 1.0);
-        strength *= cone * cone;
-      }
-    }
-    // The turn from the light's direction to the eye's: 0 where the drop stands before the lamp.
-    float cosine = -dot(direction, at) / distance_to_eye;
-    uint bin = min(uint(sqrt(max(0.5 - 0.5 * cosine, 0.0)) * float(RAIN_PHASE_BINS)), uint(RAIN_PHASE_BINS - 1));
-    sum += light.intensity_radius.rgb * (strength * phase[bin]);
-  }
-  // What mist and undrawn drops leave of it on the way to the eye.
+// Radiance that one lamp gives a drop at a place, cd/m2.
+vec3 lamp_light(LightGpu light, vec3 at, float distance_to_eye) {
+  vec3 from_light = at - light.position_range.xyz;
+  float d2 = max(dot(from_light, from_light), 1e-4);
+  bool directional = light.direction_kind.w == float(LIGHT_DIRECTIONAL);
+  vec3 direction = directional ? light.direction_kind.xyz : from_light * inversesqrt(d2);
+  float ratio = d2 / (light.position_range.w * light.position_range.w);
+  float window = clamp(1.0 - ratio * ratio, 0.0, 1.0);
+  float strength = window * window / max(d2, light.intensity_radius.w * light.intensity_radius.w + 0.0025);
+  float cone = clamp(dot(direction, light.direction_kind.xyz) * light.cone_shadow.x + light.cone_shadow.y, 0.0, 1.0);
+  strength *= light.direction_kind.w == float(LIGHT_SPOT) ? cone * cone : 1.0;
+  strength = directional ? 1.0 : strength;
+  // The turn from the light's direction to the eye's: 0 where the drop stands before the lamp.
+  float cosine = -dot(direction, at) / distance_to_eye;
+  uint bin = min(uint(sqrt(max(0.5 - 0.5 * cosine, 0.0)) * float(RAIN_PHASE_BINS)), uint(RAIN_PHASE_BINS - 1));
+  return light.intensity_radius.rgb * (strength * phase[bin]);
+}
+
+// The same after mist and undrawn drops on the way to the eye, in output units.
+vec3 seen_light(vec3 sum, float distance_to_eye) {
   sum *= exp(-(frame.mist.x + frame.rain.z) * distance_to_eye) * frame.lens.w;
   return min(sum, vec3(RAIN_RADIANCE_MOST));
 }
