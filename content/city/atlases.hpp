@@ -14,7 +14,7 @@ struct Atlas {
 };
 
 inline constexpr float pane_strength_cd_m2 = 75.0f;
-inline constexpr float shopfront_strength_cd_m2 = 55.0f;
+inline constexpr float shopfront_strength_cd_m2 = 34.0f;
 inline constexpr float sign_strength_cd_m2 = 120.0f;
 
 // 4 x 4 windows: 0..11 lit, 12..15 dark with curtains.
@@ -30,7 +30,7 @@ UvRect goods_rect(Goods);
 
 enum class Sign {
   books, cafe, bakery, tailor, antiques, wines, clocks, florist, barber, pharmacy, toys, street_main, street_cross,
-  bus_stop, news, telephone, hotel, number_plate, poster_concert, poster_sea, clock_face, hanging_bear, bar, cinema, count
+  bus_stop, news, telephone, hotel, number_plate, poster_concert, poster_sea, clock_face, hanging_bear, taxi, cinema, count
 };
 Atlas sign_atlas();
 UvRect sign_rect(Sign);

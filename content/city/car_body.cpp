@@ -167,7 +167,9 @@ Mesh car_mesh(const std::string& name, const CarShape& shape, glm::vec3 colour, 
   b.box(black, {-shape.half_width_m + 0.08f, 0.16f, -front + 0.35f}, {shape.half_width_m - 0.08f, sill_m + 0.03f, front - 0.35f}, face_all & ~face_top);
   if (sign == CarSign::taxi) {
     const float y = shape.height_m;
-    b.box(lights_on ? glow(Glow::shop) : plain({0.5f, 0.35f, 0.05f}, Finish::gloss), {-0.22f, y - 0.01f, -0.28f}, {0.22f, y + 0.13f, -0.16f}, face_no_bottom);
+    b.box(plain({0.5f, 0.3f, 0.04f}, Finish::gloss), {-0.24f, y - 0.02f, -0.28f}, {0.24f, y + 0.12f, -0.16f}, face_sides | face_top);
+    b.picture(Mat::signs, glm::vec3(1.0f), sign_rect(Sign::taxi), {-0.24f, y, -0.16f}, {0.24f, y, -0.16f}, {0.24f, y + 0.12f, -0.16f}, {-0.24f, y + 0.12f, -0.16f});
+    b.picture(Mat::signs, glm::vec3(1.0f), sign_rect(Sign::taxi), {0.24f, y, -0.28f}, {-0.24f, y, -0.28f}, {-0.24f, y + 0.12f, -0.28f}, {0.24f, y + 0.12f, -0.28f});
   }
   return mesh;
 }

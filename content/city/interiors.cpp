@@ -164,9 +164,9 @@ glm::vec3 shelf_of_goods(Goods goods, glm::vec2 p) {
   const std::uint32_t seed = 700 + static_cast<std::uint32_t>(goods);
   const glm::vec3 warm(1.0f, 0.72f, 0.40f);
   const float spot = 0.35f + 0.65f * std::abs(std::sin(p.x * 9.42f));  // three down-lights
-  glm::vec3 colour = warm * 0.10f * (0.4f + 0.6f * spot) * smooth(1.1f, 0.0f, p.y);
+  glm::vec3 colour = warm * 0.075f * (0.4f + 0.6f * spot) * smooth(1.1f, 0.0f, p.y);
   if (p.y < 0.07f) colour = warm * (0.25f + 0.7f * smooth(0.75f, 1.0f, std::abs(std::sin(p.x * 9.42f))));
-  const float rows = goods == Goods::books ? 6.0f : goods == Goods::bakery ? 4.0f : 3.0f;
+  const float rows = goods == Goods::books ? 6.0f : goods == Goods::bakery ? 5.0f : 3.0f;
   const float y = (p.y - 0.12f) / 0.74f * rows;
   const float row = std::floor(y);
   const float in_row = y - row;
@@ -203,7 +203,7 @@ glm::vec3 shelf_of_goods(Goods goods, glm::vec2 p) {
     return colour;
   }
   if (p.y > 0.12f && p.y < 0.86f) {
-    const float width = goods == Goods::books ? 0.016f : 0.07f;
+    const float width = goods == Goods::books ? 0.016f : 0.052f;
     const int item = static_cast<int>(p.x / width);
     const float fx = p.x / width - static_cast<float>(item);
     const std::uint32_t h = mix(seed, static_cast<std::uint32_t>(row), static_cast<std::uint32_t>(item));
@@ -215,9 +215,14 @@ glm::vec3 shelf_of_goods(Goods goods, glm::vec2 p) {
         const glm::vec3 cloth(0.2f + 0.7f * unit(mix(h, 1)), 0.12f + 0.5f * unit(mix(h, 2)), 0.1f + 0.45f * unit(mix(h, 3)));
         colour = cloth * 0.32f * spot * (fx > 0.08f ? 1.0f : 0.3f) * (std::abs(in_row - tall - 0.15f) < 0.02f ? 1.8f : 1.0f);
       } else {
-        const glm::vec3 crust = blend(glm::vec3(0.6f, 0.3f, 0.1f), glm::vec3(0.75f, 0.55f, 0.3f), unit(mix(h, 4)));
-        const float loaf = inside_disc({fx, in_row}, {0.5f, 0.93f}, {0.46f, 0.93f - tall});
-        colour = blend(colour, crust * 0.4f * spot * (1.1f - 0.5f * in_row), loaf);
+        // Loaves and cakes between jars and bottles.
+        const bool jar = unit(mix(h, 5)) > 0.45f;
+        const glm::vec3 crust = blend(glm::vec3(0.6f, 0.28f, 0.08f), glm::vec3(0.75f, 0.5f, 0.25f), unit(mix(h, 4)));
+        const glm::vec3 bottle(0.12f + 0.5f * unit(mix(h, 6)), 0.2f + 0.35f * unit(mix(h, 7)), 0.10f + 0.4f * unit(mix(h, 8)));
+        const float body = jar ? inside_box({fx, in_row}, {0.22f, tall + 0.12f}, {0.78f, 0.93f}) + inside_box({fx, in_row}, {0.38f, tall}, {0.62f, tall + 0.12f})
+                               : inside_disc({fx, in_row}, {0.5f, 0.93f}, {0.46f, 0.93f - tall});
+        const glm::vec3 ware = jar ? bottle * (std::abs(in_row - 0.72f) < 0.1f ? 1.6f : 0.8f) * (0.7f + 0.6f * fx) : crust;
+        colour = blend(colour, ware * 0.45f * spot * (1.1f - 0.5f * in_row), body);
       }
     } else {
       colour *= 0.5f;

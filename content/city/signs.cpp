@@ -49,7 +49,7 @@ const std::array<Board, static_cast<std::size_t>(Sign::count)> boards{{
     {"", Font::serif, {283, 600, 283, 424}, {0.1f, 0.3f, 0.4f}, cream, 0, 0},
     {"", Font::serif, {566, 600, 256, 256}, {0.6f, 0.55f, 0.42f}, cream, 0, 0},
     {"", Font::serif, {822, 600, 202, 202}, {0.09f, 0.05f, 0.02f}, gold, 0, 0},
-    {"BAR", Font::sans, {832, 552, 192, 48}, {0.02f, 0.01f, 0.01f}, {0.9f, 0.3f, 0.1f}, 0, 0.5f},
+    {"TAXI", Font::sans, {832, 552, 192, 48}, {0.8f, 0.42f, 0.05f}, {0.01f, 0.008f, 0.005f}, 0.35f, 0},
     {"CINEMA · THE THIRD UMBRELLA · 8.15 · LAST WEEK", Font::condensed, {566, 856, 458, 72}, {0.8f, 0.78f, 0.7f}, {0.03f, 0.01f, 0.01f}, 0.6f, 0},
 }};
 
@@ -78,7 +78,7 @@ Shade concert(glm::vec2 p) {
       rain - std::floor(rain) < 0.16f) {
     c += glm::vec3(0.10f, 0.13f, 0.2f);
   }
-  return {c, c * 0.55f};
+  return {c, c * 0.22f};
 }
 
 // A travel poster: sun, sea and a sail.
@@ -94,7 +94,7 @@ Shade sea(glm::vec2 p) {
   if (s.y < 0.0f && s.y > -0.3f && s.x > 0.0f && s.x < 0.17f * (s.y + 0.3f) / 0.3f) c = glm::vec3(0.85f);
   if (s.y < -0.03f && s.y > -0.26f && s.x < -0.01f && -s.x < 0.11f * (s.y + 0.3f) / 0.3f) c = {0.75f, 0.1f, 0.06f};
   if (s.y > 0.01f && s.y < 0.045f && std::abs(s.x - 0.02f) < 0.17f - 2.0f * s.y) c = {0.06f, 0.02f, 0.01f};
-  return {c, c * 0.6f};
+  return {c, c * 0.24f};
 }
 
 Shade clock(glm::vec2 p) {
@@ -174,7 +174,7 @@ Atlas sign_atlas() {
     const TextBox& at = boards[static_cast<std::size_t>(sign)].place;
     const TextBox line{at.x + 12, at.y + static_cast<int>(y * at.height), at.width - 24, static_cast<int>(height * at.height)};
     draw_text(atlas.base_colour, font, text, line, colour, line.height);
-    draw_text(atlas.emission, font, text, line, colour * 0.6f, line.height);
+    draw_text(atlas.emission, font, text, line, colour * 0.25f, line.height);
   };
   poster_text(Sign::poster_concert, 0.03f, 0.11f, Font::script, "Nocturnes", cream);
   poster_text(Sign::poster_concert, 0.13f, 0.05f, Font::serif, "for rain and orchestra", cream);
