@@ -38,11 +38,14 @@ glm::mat4 view_projection_of(const glm::quat& orientation, float vertical_fov_ra
   return glm::mat4(projection(vertical_fov_rad, aspect, near_m) * view);
 }
 
-float exposure_scale(float ev100) { return 1.0f / (1.2f * std::exp2(ev100)); }
+float exposure_scale(float ev100) {
+  return 1.0f / (1.2f * std::exp2(ev100));
+}
 
 void finish_frame(Frame& frame) {
   const FrameCamera& c = frame.camera;
-  const float width = static_cast<float>(std::max(frame.width, 1)), height = static_cast<float>(std::max(frame.height, 1));
+  const float width = static_cast<float>(std::max(frame.width, 1)),
+              height = static_cast<float>(std::max(frame.height, 1));
   const float aspect = width / height;
   const float tangent = std::tan(0.5f * c.vertical_fov_rad);
   const glm::dquat orientation = glm::normalize(glm::dquat(c.orientation));
@@ -59,15 +62,15 @@ void finish_frame(Frame& frame) {
   const glm::dquat then = angle > 1e-12 ? glm::angleAxis(-angle, turn / angle) * orientation : orientation;
   glm::dmat4 shift(1.0);
   shift[3] = glm::dvec4(glm::dvec3(c.velocity_mps) * static_cast<double>(c.exposure_s), 1.0);
-  u.shutter_view_projection = glm::mat4(projection(c.vertical_fov_rad, aspect, c.near_m) *
-                                        glm::transpose(glm::mat4_cast(then)) * shift);
+  u.shutter_view_projection =
+      glm::mat4(projection(c.vertical_fov_rad, aspect, c.near_m) * glm::transpose(glm::mat4_cast(then)) * shift);
 
   u.camera_world_m = {glm::vec3(c.position_m), c.near_m};
   u.camera_velocity_mps = {c.velocity_mps, c.exposure_s};
   u.size = {width, height, 1.0f / width, 1.0f / height};
   u.lens = {tangent, aspect, 0.5f * height / tangent, exposure_scale(c.exposure_ev100)};
-  u.time = {static_cast<float>(std::fmod(frame.time_s, 3600.0)), static_cast<float>(frame.number & 0xfffffu),
-            u.time.z, 0.0f};
+  u.time = {static_cast<float>(std::fmod(frame.time_s, 3600.0)), static_cast<float>(frame.number & 0xfffffu), u.time.z,
+            0.0f};
   u.sky_zenith = {frame.sky.zenith_cd_m2, frame.sky.ambient};
   u.sky_horizon = {frame.sky.horizon_cd_m2, frame.sky.glow_height};
   u.mist = {frame.mist.extinction_per_m, frame.mist.albedo};
@@ -104,9 +107,10 @@ std::vector<LightGpu> visible_lights(const Frame& frame) {
     const float outer = std::cos(light.outer_cone_rad);
     const float scale = light.kind == LIGHT_SPOT ? 1.0f / std::max(0.001f, inner - outer) : 0.0f;
     const float offset = light.kind == LIGHT_SPOT ? -outer * scale : 1.0f;
-    lights.push_back({glm::vec4(position, range), glm::vec4(light.intensity, light.source_radius_m),
-                      glm::vec4(light.direction, static_cast<float>(light.kind)),
-                      glm::vec4(scale, offset, static_cast<float>(light.shadow_slot), light.lights_rain ? 1.0f : 0.0f)});
+    lights.push_back(
+        {glm::vec4(position, range), glm::vec4(light.intensity, light.source_radius_m),
+         glm::vec4(light.direction, static_cast<float>(light.kind)),
+         glm::vec4(scale, offset, static_cast<float>(light.shadow_slot), light.lights_rain ? 1.0f : 0.0f)});
     weight.push_back(directional ? 1e30f : strongest / std::max(glm::dot(position, position), 1.0f));
   }
   std::vector<std::size_t> order(lights.size());

@@ -96,8 +96,8 @@ SceneMaterial describe(GpuScene::Impl& scene, const Material& m, TextureOf textu
   }
   const TextureUse& occlusion = m.occlusion_texture;
   const TextureUse& surface = m.metallic_roughness_texture;
-  const bool shared = occlusion.image != no_index && occlusion.image == surface.image &&
-                      same_placement(occlusion, surface);
+  const bool shared =
+      occlusion.image != no_index && occlusion.image == surface.image && same_placement(occlusion, surface);
   gpu.choices.x = shared ? 1.0f : 0.0f;
   general |= occlusion.image != no_index && !shared;
   if (occlusion.image == no_index) gpu.surface.w = 0.0f;
@@ -128,9 +128,10 @@ GLuint GpuScene::Impl::sampler(const TextureUse& use) {
     glSamplerParameteri(id, GL_TEXTURE_WRAP_T, wrap_mode(use.wrap_v));
     glSamplerParameteri(id, GL_TEXTURE_MAG_FILTER, use.nearest ? GL_NEAREST : GL_LINEAR);
     // On software each lookup is paid on the CPU: one mip level instead of two, and no anisotropy.
-    glSamplerParameteri(id, GL_TEXTURE_MIN_FILTER, use.nearest  ? GL_NEAREST_MIPMAP_NEAREST
-                                                   : software ? GL_LINEAR_MIPMAP_NEAREST
-                                                              : GL_LINEAR_MIPMAP_LINEAR);
+    glSamplerParameteri(id, GL_TEXTURE_MIN_FILTER,
+                        use.nearest ? GL_NEAREST_MIPMAP_NEAREST
+                        : software  ? GL_LINEAR_MIPMAP_NEAREST
+                                    : GL_LINEAR_MIPMAP_LINEAR);
     if (!use.nearest && !software && epoxy_has_gl_extension("GL_EXT_texture_filter_anisotropic")) {
       glSamplerParameterf(id, GL_TEXTURE_MAX_ANISOTROPY_EXT, 8.0f);
     }
@@ -201,7 +202,8 @@ std::uint32_t GpuScene::add(const Model& model) {
   for (const Mesh& mesh : model.meshes) {
     SceneMesh out{static_cast<std::uint32_t>(s.chunks.size()), 0, false};
     for (const Primitive& primitive : mesh.primitives) {
-      const std::size_t own = primitive.material == no_index ? materials.size() - 1 : static_cast<std::size_t>(primitive.material);
+      const std::size_t own =
+          primitive.material == no_index ? materials.size() - 1 : static_cast<std::size_t>(primitive.material);
       const auto base_vertex = static_cast<std::int32_t>(s.vertex_count + positions.size());
       const auto base_index = static_cast<std::uint32_t>(s.index_count + all_indices.size());
       std::vector<std::uint32_t> indices = primitive.indices;

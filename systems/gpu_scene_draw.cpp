@@ -31,16 +31,22 @@ std::size_t stream(Buffer& buffer, std::size_t& offset, const void* data, std::s
 
 bool takes(DrawWhat what, AlphaMode alpha, bool casts_shadow) {
   switch (what) {
-    case DrawWhat::depth_only: return casts_shadow && alpha != AlphaMode::blend;
-    case DrawWhat::shelter: return true;
-    case DrawWhat::opaque: return alpha != AlphaMode::blend;
-    case DrawWhat::blended: return alpha == AlphaMode::blend;
+    case DrawWhat::depth_only:
+      return casts_shadow && alpha != AlphaMode::blend;
+    case DrawWhat::shelter:
+      return true;
+    case DrawWhat::opaque:
+      return alpha != AlphaMode::blend;
+    case DrawWhat::blended:
+      return alpha == AlphaMode::blend;
   }
   return false;
 }
 
 // Orders floats >= 0 as their 16 leading bits.
-std::uint64_t short_distance(float distance) { return std::bit_cast<std::uint32_t>(std::max(distance, 0.0f)) >> 15; }
+std::uint64_t short_distance(float distance) {
+  return std::bit_cast<std::uint32_t>(std::max(distance, 0.0f)) >> 15;
+}
 
 // State that changes between batches: its order is the order of the batches.
 std::uint64_t batch_of(const SceneChunk& chunk, bool flipped, bool with_materials) {
@@ -105,9 +111,8 @@ std::uint64_t draw_instances(GpuScene& scene, const Frame& frame, const glm::mat
                         : batch_of(chunk, item.flipped, with_materials) << 44 |
                               short_distance(s.chunk_distance[item.chunk]) << 24 | (item.chunk & 0xffffffu);
   }
-  std::sort(s.visible.begin(), s.visible.end(), [](const auto& a, const auto& b) {
-    return a.key != b.key ? a.key < b.key : a.item < b.item;
-  });
+  std::sort(s.visible.begin(), s.visible.end(),
+            [](const auto& a, const auto& b) { return a.key != b.key ? a.key < b.key : a.item < b.item; });
   if (s.visible.empty()) return 0;
 
   s.stream.clear();
@@ -129,8 +134,8 @@ std::uint64_t draw_instances(GpuScene& scene, const Frame& frame, const glm::mat
     if (!new_batch && last && last->chunk == item.chunk) {
       ++s.commands.back().instance_count;
     } else {
-      s.commands.push_back({chunk.index_count, 1, chunk.first_index, chunk.base_vertex,
-                            static_cast<GLuint>(s.stream.size())});
+      s.commands.push_back(
+          {chunk.index_count, 1, chunk.first_index, chunk.base_vertex, static_cast<GLuint>(s.stream.size())});
       ++batches.back().count;
     }
     s.stream.push_back(s.instances[item.instance]);
@@ -138,8 +143,8 @@ std::uint64_t draw_instances(GpuScene& scene, const Frame& frame, const glm::mat
     last = &item;
   }
 
-  const std::size_t stream_at = stream(s.stream_buffer, s.stream_offset, s.stream.data(),
-                                       s.stream.size() * sizeof(InstanceRows));
+  const std::size_t stream_at =
+      stream(s.stream_buffer, s.stream_offset, s.stream.data(), s.stream.size() * sizeof(InstanceRows));
   const std::size_t commands_at =
       stream(s.command_buffer, s.command_offset, s.commands.data(), s.commands.size() * sizeof(DrawCommand));
   glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);

@@ -12,9 +12,13 @@ glm::vec3 unit_or(const glm::vec3& v, const glm::vec3& otherwise) {
   return length > 1e-12f && std::isfinite(length) ? v / length : otherwise;
 }
 
-float sign_of(float x) { return x >= 0.0f ? 1.0f : -1.0f; }
+float sign_of(float x) {
+  return x >= 0.0f ? 1.0f : -1.0f;
+}
 
-std::uint16_t unorm16(float x) { return static_cast<std::uint16_t>(std::lround(glm::clamp(x, 0.0f, 1.0f) * 65535.0f)); }
+std::uint16_t unorm16(float x) {
+  return static_cast<std::uint16_t>(std::lround(glm::clamp(x, 0.0f, 1.0f) * 65535.0f));
+}
 
 struct Triangle {
   glm::vec3 centre;

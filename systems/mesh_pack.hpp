@@ -12,8 +12,8 @@ namespace petrichor {
 
 // All that a vertex has but its position, which stands in a stream of its own: depth-only passes read no more.
 struct PackedVertex {
-  std::int16_t normal[2];   // octahedral, signed normalised
-  std::uint32_t tangent;    // 10.10.10 signed normalised, 2 bits of handedness
+  std::int16_t normal[2];  // octahedral, signed normalised
+  std::uint32_t tangent;   // 10.10.10 signed normalised, 2 bits of handedness
   float uv0[2];
   float uv1[2];
   std::uint16_t colour[4];  // unsigned normalised, linear
@@ -27,7 +27,7 @@ glm::vec3 unit_from_octahedral(const glm::vec2&);
 struct MeshChunk {
   std::uint32_t first_index;  // in the primitive's indices
   std::uint32_t index_count;
-  glm::vec3 centre_m;         // box in object space
+  glm::vec3 centre_m;  // box in object space
   glm::vec3 half_extent_m;
 };
 

@@ -9,7 +9,9 @@
 namespace petrichor {
 namespace {
 
-std::string variant_name(unsigned variant) { return "variant_" + std::to_string(variant); }
+std::string variant_name(unsigned variant) {
+  return "variant_" + std::to_string(variant);
+}
 
 std::unordered_map<std::string, ShaderKey> gbuffer_shaders() {
   std::unordered_map<std::string, ShaderKey> shaders;
@@ -46,7 +48,8 @@ void draw_gbuffer(PassContext& context) {
   if (!context.frame.scene) return;
   std::array<const Program*, material_variants> programs;
   for (unsigned v = 0; v < material_variants; ++v) programs[v] = &context.program(variant_name(v));
-  draw_instances(*context.frame.scene, context.frame, context.frame.uniforms.view_projection, DrawWhat::opaque, programs);
+  draw_instances(*context.frame.scene, context.frame, context.frame.uniforms.view_projection, DrawWhat::opaque,
+                 programs);
 }
 
 void draw_glass(PassContext& context) {
@@ -78,16 +81,15 @@ std::vector<PassOffer> geometry_passes() {
                     gbuffer_shaders(),
                     {},
                     draw_gbuffer});
-  offers.push_back({"glass",
-                    "thin panes over the lit picture: the sky's reflection, tint",
-                    {{"colour", SlotAccess::modify},
-                     {"depth", SlotAccess::read},
-                     {"environment", SlotAccess::read, true}},
-                    {},
-                    {{"glass_sky", {glass_files, {"MATERIAL_VARIANT 16"}}},
-                     {"glass_environment", {glass_files, {"MATERIAL_VARIANT 16", "ENVIRONMENT"}}}},
-                    [](const Frame& frame) { return frame.scene && has_blended(*frame.scene, frame); },
-                    draw_glass});
+  offers.push_back(
+      {"glass",
+       "thin panes over the lit picture: the sky's reflection, tint",
+       {{"colour", SlotAccess::modify}, {"depth", SlotAccess::read}, {"environment", SlotAccess::read, true}},
+       {},
+       {{"glass_sky", {glass_files, {"MATERIAL_VARIANT 16"}}},
+        {"glass_environment", {glass_files, {"MATERIAL_VARIANT 16", "ENVIRONMENT"}}}},
+       [](const Frame& frame) { return frame.scene && has_blended(*frame.scene, frame); },
+       draw_glass});
   return offers;
 }
 

@@ -55,8 +55,8 @@ void draw_map(PassContext& context, MapState& state) {
     const glm::vec3 fall =
         lattice_direction(frame.rain->mean_velocity_mps, glm::radians(context.parameter("tolerance_deg")));
     const int texels = context.texture("occlusion_map").width;
-    const OcclusionPlacement placement = place_occlusion_map(
-        frame.camera.position_m, fall, context.parameter("side_m"), texels, context.parameter("step_m"), low, high);
+    const OcclusionPlacement placement = place_occlusion_map(frame.camera.position_m, fall, context.parameter("side_m"),
+                                                             texels, context.parameter("step_m"), low, high);
     const bool stale = context.fresh("occlusion_map") || !state.drawn || state.placement != placement ||
                        state.geometry_version != frame.geometry_version || state.scene != frame.scene;
     if (stale) {

@@ -18,7 +18,7 @@ struct OcclusionPlacement {
   glm::vec3 right{1.0f, 0.0f, 0.0f};  // unit, along texture x
   glm::vec3 up{0.0f, 0.0f, -1.0f};    // unit, along texture y; right x up = -fall
   float side_m = 128.0f;
-  float depth_m = 100.0f;             // from the upper end to the lower
+  float depth_m = 100.0f;  // from the upper end to the lower
   int texels = 1024;
   friend bool operator==(const OcclusionPlacement&, const OcclusionPlacement&) = default;
 };

@@ -44,7 +44,8 @@ TEST(FrameUniforms, InverseTakesBackWhatTheProjectionDid) {
   std::uniform_real_distribution<float> unit(-1.0f, 1.0f);
   for (int i = 0; i < 500; ++i) {
     const float distance = std::exp(5.0f * unit(random)) * 5.0f;
-    const glm::vec3 p = frame.camera.orientation * glm::vec3(0.8f * unit(random), 0.4f * unit(random), -1.0f) * distance;
+    const glm::vec3 p =
+        frame.camera.orientation * glm::vec3(0.8f * unit(random), 0.4f * unit(random), -1.0f) * distance;
     const glm::vec4 c = frame.uniforms.view_projection * glm::vec4(p, 1.0f);
     const glm::vec4 back = frame.uniforms.inverse_view_projection * (c / c.w);
     EXPECT_LT(glm::distance(glm::vec3(back) / back.w, p), 1e-5f * glm::length(p)) << i;
@@ -74,7 +75,8 @@ TEST(FrameUniforms, ShutterMatrixIsTheCameraWhenTheShutterOpened) {
   const glm::vec3 moved = now.camera.velocity_mps * now.camera.exposure_s;
   const glm::vec3 turn = now.camera.angular_velocity_radps * now.camera.exposure_s;
   then.camera.position_m -= glm::dvec3(moved);
-  then.camera.orientation = glm::inverse(glm::angleAxis(glm::length(turn), glm::normalize(turn))) * now.camera.orientation;
+  then.camera.orientation =
+      glm::inverse(glm::angleAxis(glm::length(turn), glm::normalize(turn))) * now.camera.orientation;
   finish_frame(then);
 
   for (const glm::vec3 local : {glm::vec3(1, 0.5f, -4), glm::vec3(-2, 1, -20), glm::vec3(0, 0, -300)}) {
@@ -82,9 +84,9 @@ TEST(FrameUniforms, ShutterMatrixIsTheCameraWhenTheShutterOpened) {
     EXPECT_LT(glm::distance(pixel(now, now.uniforms.shutter_view_projection, p),
                             pixel(then, then.uniforms.view_projection, p + moved)),
               0.01f);
-    EXPECT_GT(glm::distance(pixel(now, now.uniforms.shutter_view_projection, p),
-                            pixel(now, now.uniforms.view_projection, p)),
-              5.0f);
+    EXPECT_GT(
+        glm::distance(pixel(now, now.uniforms.shutter_view_projection, p), pixel(now, now.uniforms.view_projection, p)),
+        5.0f);
   }
   now.camera.velocity_mps = now.camera.angular_velocity_radps = glm::vec3(0);
   finish_frame(now);
@@ -103,8 +105,8 @@ TEST(FrameUniforms, RainBeyondTheDrawnDropsIsExtinction) {
   frame.rain->drawn_distance_m = 25;
   finish_frame(frame);
   EXPECT_NEAR(frame.uniforms.rain.x + frame.uniforms.rain.z, 0.0012f, 1e-9f);  // beyond: all of it
-  EXPECT_NEAR(frame.uniforms.rain.z, 0.0003f, 1e-9f);                         // before: what is never drawn
-  EXPECT_EQ(frame.uniforms.rain.y, 22.5f);  // the middle of the fade
+  EXPECT_NEAR(frame.uniforms.rain.z, 0.0003f, 1e-9f);                          // before: what is never drawn
+  EXPECT_EQ(frame.uniforms.rain.y, 22.5f);                                     // the middle of the fade
 }
 
 FrameLight lamp(glm::vec3 position, float candela) {
@@ -133,8 +135,8 @@ TEST(VisibleLights, OnlyWhatReachesTheFrustumBrightestFirst) {
   Frame frame = some_frame();
   frame.camera.position_m = {0, 0, 0};
   frame.camera.orientation = {1, 0, 0, 0};  // along -z
-  frame.lights = {lamp({0, 0, -50}, 100), lamp({0, 0, -5}, 100), lamp({0, 0, 500}, 100), lamp({0, 3, 2}, 50),
-                  lamp({0, 0, -6}, 0), lamp({0, 0, 0}, 1)};
+  frame.lights = {lamp({0, 0, -50}, 100), lamp({0, 0, -5}, 100), lamp({0, 0, 500}, 100),
+                  lamp({0, 3, 2}, 50),    lamp({0, 0, -6}, 0),   lamp({0, 0, 0}, 1)};
   frame.lights[5].kind = LIGHT_DIRECTIONAL;
   frame.lights[1].shadow_slot = 7;
   finish_frame(frame);

@@ -6,7 +6,9 @@
 namespace petrichor::test {
 namespace {
 
-glm::quat looking(glm::vec3 way) { return glm::quatLookAt(glm::normalize(way), glm::vec3(0, 1, 0)); }
+glm::quat looking(glm::vec3 way) {
+  return glm::quatLookAt(glm::normalize(way), glm::vec3(0, 1, 0));
+}
 
 class Gbuffer : public testing::Test {
  protected:
@@ -96,8 +98,8 @@ TEST_F(Gbuffer, PositionFromDepthIsExact) {
     for (int y = 0; y < depth.height; ++y) {
       for (int x = 0; x < depth.width; ++x) {
         const double nx = (x + 0.5) / depth.width * 2 - 1, ny = (y + 0.5) / depth.height * 2 - 1;
-        const glm::dvec3 ray = glm::dquat(c.orientation) *
-                               glm::dvec3(nx * tangent * depth.width / depth.height, ny * tangent, -1.0);
+        const glm::dvec3 ray =
+            glm::dquat(c.orientation) * glm::dvec3(nx * tangent * depth.width / depth.height, ny * tangent, -1.0);
         const glm::vec4 p = got[static_cast<std::size_t>(y * depth.width + x)];
         if (ray.y > -1e-4) {
           EXPECT_EQ(p.w, 0.0f);
@@ -147,8 +149,8 @@ TEST_F(Gbuffer, CullingDropsNothingThatIsSeen) {
   Stage stage(geometry_passes(), gbuffer_names, gbuffer_table());
   stage.scene.add(town(11));
   stage.frame.instances = crowd(5, 200);
-  const auto program = stage.shaders.load({{"systems/geometry/gbuffer.vert.glsl", "systems/geometry/gbuffer.frag.glsl"},
-                                           {"MATERIAL_VARIANT 0"}});
+  const auto program = stage.shaders.load(
+      {{"systems/geometry/gbuffer.vert.glsl", "systems/geometry/gbuffer.frag.glsl"}, {"MATERIAL_VARIANT 0"}});
   ASSERT_TRUE(program);
   Texture depth = make_texture_2d(160, 90, GL_DEPTH_COMPONENT32F);
   Texture albedo = make_texture_2d(160, 90, GL_RGBA8);
@@ -173,7 +175,8 @@ TEST_F(Gbuffer, CullingDropsNothingThatIsSeen) {
     glClearBufferfv(GL_DEPTH, 0, zero);
     glClearBufferfv(GL_COLOR, 0, zero);
     (*program)->use();
-    const std::uint64_t drawn = draw_instances(stage.scene, stage.frame, stage.frame.uniforms.view_projection, DrawWhat::opaque);
+    const std::uint64_t drawn =
+        draw_instances(stage.scene, stage.frame, stage.frame.uniforms.view_projection, DrawWhat::opaque);
     glClearBufferfv(GL_DEPTH, 0, zero);
     glClearBufferfv(GL_COLOR, 0, zero);
     all = draw_instances(stage.scene, stage.frame, everything, DrawWhat::opaque);

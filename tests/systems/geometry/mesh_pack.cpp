@@ -24,8 +24,9 @@ TEST(MeshPack, DirectionsSurvivePacking) {
     const glm::vec3 n = unit_from_octahedral({p.normal[0] / 32767.0f, p.normal[1] / 32767.0f});
     const glm::vec4 tangent = glm::unpackSnorm3x10_1x2(p.tangent);
     worst_normal = std::max(worst_normal, static_cast<double>(glm::length(glm::cross(n, v.normal))));
-    worst_tangent = std::max(worst_tangent, static_cast<double>(glm::length(
-                                                glm::cross(glm::normalize(glm::vec3(tangent)), glm::vec3(v.tangent)))));
+    worst_tangent = std::max(
+        worst_tangent,
+        static_cast<double>(glm::length(glm::cross(glm::normalize(glm::vec3(tangent)), glm::vec3(v.tangent)))));
     EXPECT_GT(glm::dot(n, v.normal), 0.99f);
     EXPECT_EQ(tangent.w, v.tangent.w);
   }

@@ -19,11 +19,11 @@ class Rays {
     for (const Mesh& mesh : model.meshes) {
       for (const Primitive& p : mesh.primitives) {
         RTCGeometry g = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
-        auto* v = static_cast<glm::vec3*>(rtcSetNewGeometryBuffer(g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 12,
-                                                                  p.vertices.size()));
+        auto* v = static_cast<glm::vec3*>(
+            rtcSetNewGeometryBuffer(g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 12, p.vertices.size()));
         for (std::size_t i = 0; i < p.vertices.size(); ++i) v[i] = p.vertices[i].position_m;
-        auto* t = static_cast<std::uint32_t*>(rtcSetNewGeometryBuffer(g, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 12,
-                                                                      p.indices.size() / 3));
+        auto* t = static_cast<std::uint32_t*>(
+            rtcSetNewGeometryBuffer(g, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 12, p.indices.size() / 3));
         std::copy(p.indices.begin(), p.indices.end(), t);
         rtcCommitGeometry(g);
         rtcAttachGeometry(scene_, g);
@@ -65,12 +65,12 @@ Model street() {
     model.meshes.push_back({"part", {box(low, high, material)}});
   };
   put({-40, -1, -40}, {40, 0, 40}, 0);
-  put({-12, 0, -14}, {12, 9, -6}, 0);          // house
-  put({-4, 2.6f, -6}, {4, 2.7f, -4.2f}, 0);    // awning
-  put({5, 2.2f, 2}, {9, 2.22f, 4}, 1);         // glass roof on
-  put({5, 0, 2}, {5.1f, 2.2f, 2.1f}, 0);       // a post
-  put({-8, 5, 3}, {-5, 5.1f, 3.12f}, 0);       // arm
-  put({-12, 3, 6}, {-4, 3.3f, 12}, 0);         // gallery
+  put({-12, 0, -14}, {12, 9, -6}, 0);        // house
+  put({-4, 2.6f, -6}, {4, 2.7f, -4.2f}, 0);  // awning
+  put({5, 2.2f, 2}, {9, 2.22f, 4}, 1);       // glass roof on
+  put({5, 0, 2}, {5.1f, 2.2f, 2.1f}, 0);     // a post
+  put({-8, 5, 3}, {-5, 5.1f, 3.12f}, 0);     // arm
+  put({-12, 3, 6}, {-4, 3.3f, 12}, 0);       // gallery
   put({-12, 0, 12}, {-4, 3, 12.3f}, 0);
   return model;
 }
@@ -185,9 +185,10 @@ TEST_F(Occlusion, AgreesWithRaysUnderTiltedRain) {
       inexcusable += !near_edge;
     }
     const double share = static_cast<double>(wrong) / static_cast<double>(places.size());
-    RecordProperty("misjudged_percent_at_wind_" + std::to_string(static_cast<int>(10 * wind)), std::to_string(100 * share));
-    std::printf("wind %.1f m/s: %.2f%% of %zu places misjudged, %.1f%% sheltered\n", static_cast<double>(wind), 100 * share,
-                places.size(), 100.0 * sheltered / static_cast<double>(places.size()));
+    RecordProperty("misjudged_percent_at_wind_" + std::to_string(static_cast<int>(10 * wind)),
+                   std::to_string(100 * share));
+    std::printf("wind %.1f m/s: %.2f%% of %zu places misjudged, %.1f%% sheltered\n", static_cast<double>(wind),
+                100 * share, places.size(), 100.0 * sheltered / static_cast<double>(places.size()));
     EXPECT_EQ(inexcusable, 0) << wind;
     EXPECT_GT(sheltered, 500) << wind;
     // About 60 m of edges over 800 m2 of ground, half a texel and half the lattice's tilt on average.
@@ -313,7 +314,8 @@ TEST(OcclusionPlacement, StaysPutWhileTheCameraMovesALittle) {
   const glm::vec3 fall = glm::normalize(glm::vec3(0.3f, -1.0f, 0.1f));
   const glm::dvec3 scene_low(-60, -1, -60), scene_high(60, 20, 60);
   const auto at = [&](glm::dvec3 camera) {
-    return place_occlusion_map(camera, fall, 128.0f, 1024, 16.0f, glm::vec3(scene_low - camera), glm::vec3(scene_high - camera));
+    return place_occlusion_map(camera, fall, 128.0f, 1024, 16.0f, glm::vec3(scene_low - camera),
+                               glm::vec3(scene_high - camera));
   };
   int changes = 0;
   OcclusionPlacement last = at({0, 1.7, 0});
