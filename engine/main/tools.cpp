@@ -90,13 +90,18 @@ Result<void> chart(const ChartOptions& options) {
 Result<void> measure(const MeasureOptions& options) {
   auto renderer = open_renderer(false, {});
   if (!renderer) return tl::unexpected(renderer.error());
-  const auto measured = measure_rain(options.rate_mm_per_hour, options.wind_mps, options.seconds, options.seed);
+  Progress progress("raining", 1000);
+  const auto measured = measure_rain(options.rate_mm_per_hour, options.wind_mps, options.seconds, options.seed,
+                                     [&](double share) { progress.advance_to(static_cast<std::int64_t>(share * 1000.0)); });
   if (!measured) return tl::unexpected(measured.error());
   const nlohmann::ordered_json json = {{"asked_mm_per_hour", measured->asked_mm_per_hour},
                                        {"measured_mm_per_hour", measured->measured_mm_per_hour},
                                        {"drops_per_m3", measured->drops_per_m3},
                                        {"impacts_per_m2_s", measured->impacts_per_m2_s},
                                        {"mean_fall_speed_mps", measured->mean_fall_speed_mps},
+                                       {"smaller_drops_mm_per_hour", measured->smaller_drops_mm_per_hour},
+                                       {"drops_counted", measured->drops_counted},
+                                       {"area_m2", measured->area_m2},
                                        {"wind_mps", options.wind_mps},
                                        {"seconds", options.seconds},
                                        {"seed", options.seed}};

@@ -2,9 +2,10 @@
 # The GPU figures of docs/performance.md, on a machine that has only a driver: the built program and its libraries in
 # BUNDLE (bin, lib, run), the data beside it. One call, minutes: tests/bench/gpu_session.sh BUNDLE OUT
 set -u
-run="$1/run petrichor"
+bundle=$(cd "$1" && pwd)
+run="$bundle/run petrichor"
 out=$2
-export PETRICHOR_DATA="$1/share/petrichor"
+export PETRICHOR_DATA="$bundle/share/petrichor"
 $run info | sed -n '/^Device/,/^$/p'
 for case in "38000000 1280x720" "5000000 1280x1024" "200000 1280x720"; do
   set -- $case
