@@ -21,7 +21,7 @@ struct RainClass {
 struct FrameRain {
   float rain_mm_per_hour = 0.0f;
   std::uint32_t seed = 1;
-  float asked_distance_m = 0.0f;        // as the emitter says
+  float asked_distance_m = 0.0f;  // as the emitter says
   std::int32_t maximum_drops = 0;
   // After the budget of drops: single drops fade out (one by one) from fade_start_m to drawn_distance_m.
   float fade_start_m = 0.0f;

@@ -19,15 +19,15 @@ namespace petrichor {
 constexpr int gust_waves = 4;
 
 struct WindAnswer {
-  double response_s = 0.0;              // time constant of the low-pass; 0 follows at once
-  glm::dvec3 displacement_m{0.0};       // since time 0, at the anchor
-  glm::dvec3 transient_mps{0.0};        // velocity minus steady answer, at the anchor
+  double response_s = 0.0;         // time constant of the low-pass; 0 follows at once
+  glm::dvec3 displacement_m{0.0};  // since time 0, at the anchor
+  glm::dvec3 transient_mps{0.0};   // velocity minus steady answer, at the anchor
 };
 
 struct WindMotion {
-  Wind wind;                                       // since the anchor
+  Wind wind;  // since the anchor
   double anchor_s = 0.0;
-  std::array<double, gust_waves> gust_phase{};     // radians, at the anchor
+  std::array<double, gust_waves> gust_phase{};  // radians, at the anchor
   std::array<double, gust_waves> swirl_phase{};
   std::vector<WindAnswer> answers;
 };

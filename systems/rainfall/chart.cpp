@@ -20,13 +20,13 @@ namespace petrichor {
 namespace {
 
 constexpr float wall_m = 20.0f;
-constexpr int instants = 64;   // of the truth's exposure
-constexpr int moments = 6;     // pictures, far enough apart to share no drop
-constexpr int block = 8;       // pixels: statistics are pooled over blocks, or six pictures would be too few
+constexpr int instants = 64;  // of the truth's exposure
+constexpr int moments = 6;    // pictures, far enough apart to share no drop
+constexpr int block = 8;      // pixels: statistics are pooled over blocks, or six pictures would be too few
 
 struct Setting {
   std::string name;
-  float distance_m;        // 0: fog alone
+  float distance_m;  // 0: fog alone
   std::int32_t most_drops;
 };
 
@@ -65,7 +65,8 @@ class Studio {
     f.camera.vertical_fov_rad = glm::radians(30.0f);
     f.camera.exposure_ev100 = 0.0f;
     f.time_s = time_s;
-    for (const glm::vec3 at : {glm::vec3(-2.5f, 3.0f, -9.0f), glm::vec3(2.0f, 4.0f, -14.0f), glm::vec3(0.5f, 2.0f, -17.0f)}) {
+    for (const glm::vec3 at :
+         {glm::vec3(-2.5f, 3.0f, -9.0f), glm::vec3(2.0f, 4.0f, -14.0f), glm::vec3(0.5f, 2.0f, -17.0f)}) {
       FrameLight light{};
       light.position_m = at;
       light.direction = {0.0f, -1.0f, 0.0f};
@@ -164,12 +165,15 @@ void mark_hull(std::vector<Row>& rows) {
 }
 
 std::string table(const std::vector<Row>& rows, double floor, const std::string& device, int width, int height) {
-  std::string text = fmt::format("# {}x{}, {}; error of two truths of other seeds: {:.5f}\n", width, height, device, floor);
-  text += "technique,distance_m,maximum_drops,drops_drawn,ms_min,ms_median,mean_error,deviation_error,error,mean_shift,sound,on_hull\n";
+  std::string text =
+      fmt::format("# {}x{}, {}; error of two truths of other seeds: {:.5f}\n", width, height, device, floor);
+  text +=
+      "technique,distance_m,maximum_drops,drops_drawn,ms_min,ms_median,mean_error,deviation_error,error,mean_shift,"
+      "sound,on_hull\n";
   for (const Row& r : rows) {
-    text += fmt::format("{},{},{},{:.0f},{:.4f},{:.4f},{:.6f},{:.6f},{:.6f},{:.6f},{},{}\n", r.setting.name, r.setting.distance_m,
-                        r.setting.most_drops, r.drops, r.ms_min, r.ms_median, r.mean_error, r.deviation_error, r.error,
-                        r.mean_shift, int(r.sound), int(r.on_hull));
+    text += fmt::format("{},{},{},{:.0f},{:.4f},{:.4f},{:.6f},{:.6f},{:.6f},{:.6f},{},{}\n", r.setting.name,
+                        r.setting.distance_m, r.setting.most_drops, r.drops, r.ms_min, r.ms_median, r.mean_error,
+                        r.deviation_error, r.error, r.mean_shift, int(r.sound), int(r.on_hull));
   }
   return text;
 }
@@ -195,17 +199,19 @@ std::string gnuplot_text(const std::filesystem::path& folder, const std::vector<
                                        std::pair{"pngcairo size 900,600", "rainfall.png"}}) {
     text += fmt::format("set terminal {}\nset output '{}'\n", terminal, (folder / file).string());
     text += fmt::format("set title \"Falling rain, 10 mm/h, {}\"\n", device);
-    text += "set logscale xy\nset grid\nset key bottom left\nset xlabel 'milliseconds a frame (median)'\n"
-            "set ylabel 'error against the truth (no rain at all: 1)'\n";
+    text +=
+        "set logscale xy\nset grid\nset key bottom left\nset xlabel 'milliseconds a frame (median)'\n"
+        "set ylabel 'error against the truth (no rain at all: 1)'\n";
     text += fmt::format("set xrange [{}:{}]\n", low * 0.7, high * 2.0);
     text += fmt::format("floor = {}\n", floor);
-    text += "plot '-' using 1:2 with points pt 7 ps 1.2 lc rgb '#1f6fb2' title 'sound', "
-            "'-' using 1:2 with points pt 6 ps 1.2 lc rgb '#1f6fb2' title 'mean is off by more than 0.5%', "
-            "'-' using 1:2:3 with labels offset 0,1 notitle, "
-            "'-' using 1:2 with lines lc rgb '#999999' title 'not dominated', "
-            "floor with lines dt 2 lc rgb '#b23a1f' title 'two truths, other seeds'\n";
-    text += points([](const Row& r) { return r.sound; }) + "e\n" + points([](const Row& r) { return !r.sound; }) + "e\n" +
-            points([](const Row&) { return true; }) + "e\n" + line + "e\n";
+    text +=
+        "plot '-' using 1:2 with points pt 7 ps 1.2 lc rgb '#1f6fb2' title 'sound', "
+        "'-' using 1:2 with points pt 6 ps 1.2 lc rgb '#1f6fb2' title 'mean is off by more than 0.5%', "
+        "'-' using 1:2:3 with labels offset 0,1 notitle, "
+        "'-' using 1:2 with lines lc rgb '#999999' title 'not dominated', "
+        "floor with lines dt 2 lc rgb '#b23a1f' title 'two truths, other seeds'\n";
+    text += points([](const Row& r) { return r.sound; }) + "e\n" + points([](const Row& r) { return !r.sound; }) +
+            "e\n" + points([](const Row&) { return true; }) + "e\n" + line + "e\n";
   }
   return text;
 }
@@ -262,7 +268,9 @@ Result<void> chart_rainfall(const std::filesystem::path& folder, const std::stri
   auto dry_image = studio->draw(dry_frame);
   if (!dry_image) return tl::unexpected(dry_image.error());
   const Statistics dry = studio->statistics(std::vector<Image>(2, *dry_image));
-  const auto error = [](const Statistics& a, const Statistics& b) { return rms(a.mean, b.mean) + rms(a.deviation, b.deviation); };
+  const auto error = [](const Statistics& a, const Statistics& b) {
+    return rms(a.mean, b.mean) + rms(a.deviation, b.deviation);
+  };
   const double off = error(dry, truth), floor = error(truths[1], truth) / off;
 
   std::vector<Row> rows;
@@ -306,10 +314,13 @@ Result<void> chart_rainfall(const std::filesystem::path& folder, const std::stri
   }
   mark_hull(rows);
 
-  if (auto written = write_whole_file(folder / "rainfall.csv", table(rows, floor, device, studio->width(), studio->height())); !written)
+  if (auto written =
+          write_whole_file(folder / "rainfall.csv", table(rows, floor, device, studio->width(), studio->height()));
+      !written)
     return written;
   if (std::system("command -v gnuplot >/dev/null 2>&1") != 0) {
-    log_warn("gnuplot is not installed: {} holds the figures, no picture was drawn", (folder / "rainfall.csv").string());
+    log_warn("gnuplot is not installed: {} holds the figures, no picture was drawn",
+             (folder / "rainfall.csv").string());
     return {};
   }
   const std::filesystem::path script = folder / "rainfall.gnuplot";

@@ -89,7 +89,8 @@ glm::dvec3 drop_radiance(const glm::dvec3& direction,
 std::array<glm::vec3, 4> fit_drop_radiance(const std::function<glm::dvec3(const glm::dvec3&)>& surroundings) {
   // Legendre polynomials are orthogonal on [-1, 1], so each coefficient is one integral; Gauss-Legendre, 8 points.
   constexpr std::array<double, 4> nodes{0.1834346424956498, 0.5255324099163290, 0.7966664774136267, 0.9602898564975363};
-  constexpr std::array<double, 4> weights{0.3626837833783620, 0.3137066458778873, 0.2223810344533745, 0.1012285362903763};
+  constexpr std::array<double, 4> weights{0.3626837833783620, 0.3137066458778873, 0.2223810344533745,
+                                          0.1012285362903763};
   std::array<glm::dvec3, 4> c{};
   for (int i = 0; i < 8; ++i) {
     const double x = (i & 1 ? -1.0 : 1.0) * nodes[i / 2];

@@ -36,19 +36,19 @@ struct DropClass {
   // Speed at the middle of the range. It must not depend on the rain rate: the class has fallen V t by now,
   // and a change of V would shift the whole field.
   double fall_speed_mps;
-  double diameter_mm;         // such that diameter, speed and number give the class's water exactly
-  double drops_per_m3;        // exact integral
-  double base_drops_per_m3;   // density of the first layer of the field: depends on the sizes, not on the rate
-  bool drawn;                 // at least minimum_diameter_mm
+  double diameter_mm;        // such that diameter, speed and number give the class's water exactly
+  double drops_per_m3;       // exact integral
+  double base_drops_per_m3;  // density of the first layer of the field: depends on the sizes, not on the rate
+  bool drawn;                // at least minimum_diameter_mm
 };
 
-constexpr int drawn_classes = 16;    // between minimum_diameter_mm and maximum_diameter_mm, log-spaced
-constexpr int undrawn_classes = 6;   // below it, down to smallest_drop_mm: they fall, are counted and dim the view
+constexpr int drawn_classes = 16;   // between minimum_diameter_mm and maximum_diameter_mm, log-spaced
+constexpr int undrawn_classes = 6;  // below it, down to smallest_drop_mm: they fall, are counted and dim the view
 
 // The small undrawn classes first, then the drawn ones, by rising diameter.
 std::vector<DropClass> make_drop_classes(const Emitter&);
 
-double rain_mm_per_hour(const DropClass&);       // water reaching level ground
-double extinction_per_m(const DropClass&);       // geometric (Q = 1), of the class as it is drawn
+double rain_mm_per_hour(const DropClass&);  // water reaching level ground
+double extinction_per_m(const DropClass&);  // geometric (Q = 1), of the class as it is drawn
 
 }  // namespace petrichor

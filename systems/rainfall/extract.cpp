@@ -98,8 +98,10 @@ void simulate_rainfall(Registry& registry, double time_s) {
                                         motion->maximum_diameter_mm != emitter->maximum_diameter_mm);
   if (!motion || other_classes) {
     RainMotion fresh{emitter->minimum_diameter_mm, emitter->maximum_diameter_mm, start_rain_motion(*emitter, wind)};
-    if (motion) *motion = std::move(fresh);
-    else registry.emplace<RainMotion>(entity, std::move(fresh));
+    if (motion)
+      *motion = std::move(fresh);
+    else
+      registry.emplace<RainMotion>(entity, std::move(fresh));
     return;
   }
   follow_wind(motion->wind, wind, time_s);

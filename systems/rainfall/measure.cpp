@@ -113,8 +113,10 @@ Result<RainMeasurement> measure_rain(const Emitter& emitter, const Wind& wind, d
     const double volume = 3.14159265358979 / 6.0 * d * d * d * static_cast<double>(crossed[k]);
     water_m3 += volume;
     result.drops_counted += crossed[k];
-    if (before.classes[k].drawn) impacts += static_cast<double>(crossed[k]);
-    else smaller_m3 += volume;
+    if (before.classes[k].drawn)
+      impacts += static_cast<double>(crossed[k]);
+    else
+      smaller_m3 += volume;
     drops += static_cast<double>(inside[k]);
   }
   const double to_mm_per_hour = 1000.0 * 3600.0 / (result.area_m2 * seconds);

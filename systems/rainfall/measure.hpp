@@ -17,12 +17,12 @@ struct RainMeasurement {
   double measured_mm_per_hour = 0.0;
   double smaller_drops_mm_per_hour = 0.0;
   // Of drops of at least the minimum diameter:
-  double drops_per_m3 = 0.0;          // counted in a cube of air
-  double impacts_per_m2_s = 0.0;      // counted through the square
-  double mean_fall_speed_mps = 0.0;   // of the drops in the air: impacts over drops
+  double drops_per_m3 = 0.0;         // counted in a cube of air
+  double impacts_per_m2_s = 0.0;     // counted through the square
+  double mean_fall_speed_mps = 0.0;  // of the drops in the air: impacts over drops
   double seconds = 0.0;
   double area_m2 = 0.0;
-  std::uint64_t drops_counted = 0;    // through the square, of any size
+  std::uint64_t drops_counted = 0;  // through the square, of any size
 };
 
 // Rains for `seconds` (> 0) on a square of 10 m x 10 m. progress gets 0 to 1 and may be empty. Errors: shaders.

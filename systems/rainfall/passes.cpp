@@ -41,7 +41,9 @@ bool rains(const Frame& frame) {
   return frame.rain && frame.rain->rain_mm_per_hour > 0.0f && frame.rain->drawn_distance_m > 0.0f;
 }
 
-bool lamps_on_rain(const Frame& frame) { return frame.uniforms.counts.x > 0; }
+bool lamps_on_rain(const Frame& frame) {
+  return frame.uniforms.counts.x > 0;
+}
 
 glm::vec3 distances(const Frame& frame) {
   // Nearer than this no drop is drawn singly: a handful, out of focus in any real camera, and each as large as
@@ -59,14 +61,17 @@ void update_optics(RainGpu& gpu, const FrameSky& sky) {
   static_assert(drop_phase_bins == RAIN_PHASE_BINS);
   if (gpu.optics.bytes == 0) upload(gpu.optics, std::span<const float>(make_drop_phase()));
   const bool same = gpu.ambient_known && sky.zenith_cd_m2 == gpu.ambient_sky.zenith_cd_m2 &&
-                    sky.horizon_cd_m2 == gpu.ambient_sky.horizon_cd_m2 && sky.glow_height == gpu.ambient_sky.glow_height;
+                    sky.horizon_cd_m2 == gpu.ambient_sky.horizon_cd_m2 &&
+                    sky.glow_height == gpu.ambient_sky.glow_height;
   if (same) return;
   gpu.ambient = fit_drop_radiance([&](const glm::dvec3& d) { return sky_radiance(sky, d); });
   gpu.ambient_sky = sky;
   gpu.ambient_known = true;
 }
 
-void bind(GLuint binding, const Buffer& buffer) { glBindBufferBase(GL_SHADER_STORAGE_BUFFER, binding, buffer.id); }
+void bind(GLuint binding, const Buffer& buffer) {
+  glBindBufferBase(GL_SHADER_STORAGE_BUFFER, binding, buffer.id);
+}
 
 bool is_software_gl() {
   const char* name = reinterpret_cast<const char*>(glGetString(GL_RENDERER));
@@ -196,8 +201,10 @@ void splat(RainGpu& gpu, PassContext& context) {
   const bool scene = context.has("depth"), lamps = lamps_on_rain(frame);
   if (scene) context.bind_texture(0, "depth");
   if (scene && context.has("occlusion_map")) context.bind_texture(OCCLUSION_UNIT, "occlusion_map");
-  if (gpu.software) draw_in_software(gpu, context, scene, lamps);
-  else draw_on_gpu(gpu, context, scene, lamps);
+  if (gpu.software)
+    draw_in_software(gpu, context, scene, lamps);
+  else
+    draw_on_gpu(gpu, context, scene, lamps);
 }
 
 void composite(RainGpu& gpu, PassContext& context) {
@@ -283,7 +290,8 @@ std::vector<PassOffer> rainfall_passes() {
   offers[2].name = "rain_composite";
   offers[2].meaning = "lays the drops over the picture";
   offers[2].slots = {{"colour", SlotAccess::modify}, {"environment", SlotAccess::read, true}};
-  offers[2].shaders = {{"composite", {composite_file, {}}}, {"composite_environment", {composite_file, {"ENVIRONMENT"}}}};
+  offers[2].shaders = {{"composite", {composite_file, {}}},
+                       {"composite_environment", {composite_file, {"ENVIRONMENT"}}}};
   const std::vector<std::string> raster_files{"systems/rainfall/rain_composite.vert.glsl",
                                               "systems/rainfall/rain_composite.frag.glsl"};
   offers[2].shaders["raster"] = {raster_files, {"SOFTWARE"}};
@@ -297,7 +305,8 @@ std::vector<PassOffer> rainfall_passes() {
 
 RainStats rain_stats(const Frame& frame) {
   const auto gpu = newest.lock();
-  if (!gpu || gpu->frame_number != frame.number || gpu->layer_count == 0 || gpu->command.bytes < sizeof(Command)) return {};
+  if (!gpu || gpu->frame_number != frame.number || gpu->layer_count == 0 || gpu->command.bytes < sizeof(Command))
+    return {};
   Command command;
   glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
   read_buffer(gpu->command, &command, sizeof command);

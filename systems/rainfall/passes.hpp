@@ -14,7 +14,8 @@ namespace petrichor {
 std::vector<PassOffer> rainfall_passes();
 
 struct RainStats {
-  std::uint32_t drops_drawn = 0;  // in view, nearer than the scene at their middle (or long enough to tell otherwise), not sheltered
+  std::uint32_t drops_drawn =
+      0;  // in view, nearer than the scene at their middle (or long enough to tell otherwise), not sheltered
   std::uint32_t cells = 0;
 };
 // Of the frame just executed; waits for the GPU. All 0 where that frame ran no rain pass.

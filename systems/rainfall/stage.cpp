@@ -6,6 +6,7 @@
 
 #include "systems/rainfall/drop_optics.hpp"
 #include "systems/rainfall/passes.hpp"
+#include "systems/rainfall/rain_shared.h"
 
 namespace petrichor {
 namespace {
@@ -16,11 +17,14 @@ PassOffer backdrop_offer(const StageSet& set) {
   offer.meaning = "an even wall";
   offer.slots = {{"colour", SlotAccess::write}, {"depth", SlotAccess::write, true}};
   offer.shaders = {{"backdrop", {{"systems/rainfall/stage_backdrop.comp.glsl"}, {}}}};
-  offer.execute = [set](PassContext& context) {
+  const auto optics = std::make_shared<Buffer>();
+  offer.execute = [set, optics](PassContext& context) {
     if (set.wall_distance_m == 0.0f) {  // darkness
       glClearTexImage(context.texture("colour").id, 0, GL_RGBA, GL_FLOAT, nullptr);
       return;
     }
+    if (optics->bytes == 0) upload(*optics, std::span<const float>(make_drop_phase()));
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, RAIN_OPTICS_BINDING, optics->id);
     const Program& program = context.program("backdrop");
     program.use();
     program.set("wall", set.wall_cd_m2);
@@ -67,7 +71,8 @@ PassOffer present_offer() {
   offer.name = "stage_present";
   offer.meaning = "linear light to 8 bits";
   offer.slots = {{"colour", SlotAccess::read}, {"picture", SlotAccess::write}};
-  offer.shaders = {{"present", {{"systems/rainfall/rain_composite.vert.glsl", "systems/rainfall/stage_present.frag.glsl"}, {}}}};
+  offer.shaders = {
+      {"present", {{"systems/rainfall/rain_composite.vert.glsl", "systems/rainfall/stage_present.frag.glsl"}, {}}}};
   const auto vertices = std::make_shared<VertexArray>();
   offer.execute = [vertices](PassContext& context) {
     if (!*vertices) {
@@ -143,7 +148,8 @@ std::vector<float> RainStage::read_light() const {
   const Texture* texture = output_;
   std::vector<float> pixels(std::size_t(texture->width) * texture->height * 4);
   glMemoryBarrier(GL_TEXTURE_UPDATE_BARRIER_BIT);
-  glGetTextureImage(texture->id, 0, GL_RGBA, GL_FLOAT, static_cast<GLsizei>(pixels.size() * sizeof(float)), pixels.data());
+  glGetTextureImage(texture->id, 0, GL_RGBA, GL_FLOAT, static_cast<GLsizei>(pixels.size() * sizeof(float)),
+                    pixels.data());
   return pixels;
 }
 

@@ -15,13 +15,13 @@ namespace petrichor {
 
 struct StageSet {
   glm::vec3 wall_cd_m2{0.0f};
-  float wall_distance_m = 0.0f;   // 0: no wall and no fog, an empty scene
-  bool wall_hides = false;        // the wall is in the depth buffer
-  bool map = false;               // there is an occlusion map, of
-  float roof_m = 0.0f;            // a roof this high above the camera over all places with x < 0, relative; 0: no roof
-  bool present = true;            // also make the 8-bit picture
-  int path = 0;                   // of rain_cells: how drops are drawn
-  bool draw_rain = true;          // false: the backdrop alone
+  float wall_distance_m = 0.0f;  // 0: no wall and no fog, an empty scene
+  bool wall_hides = false;       // the wall is in the depth buffer
+  bool map = false;              // there is an occlusion map, of
+  float roof_m = 0.0f;           // a roof this high above the camera over all places with x < 0, relative; 0: no roof
+  bool present = true;           // also make the 8-bit picture
+  int path = 0;                  // of rain_cells: how drops are drawn
+  bool draw_rain = true;         // false: the backdrop alone
 };
 
 class RainStage {

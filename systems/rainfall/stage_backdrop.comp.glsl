@@ -1,19 +1,43 @@
 #version 450 core
-// An even wall at some distance, through what fog stands in for: undrawn rain beyond and between the drawn drops.
+// An even wall at some distance, through what stands in for undrawn rain: extinction, and the lamps' light that its
+// drops would show, by the same phase function and the same coefficient.
 layout(local_size_x = 8, local_size_y = 8) in;
 #include "systems/geometry/position.glsl"
+#include "systems/rainfall/rain_shared.h"
 layout(rgba16f, binding = 0) writeonly uniform image2D colour;
-uniform vec3 wall;          // cd/m2
-uniform float wall_distance_m;  // along the axis; 0: endless darkness, no fog
-uniform vec3 around;        // what drops show, cd/m2
+layout(std430, binding = RAIN_OPTICS_BINDING) readonly buffer RainOptics { float phase[RAIN_PHASE_BINS]; };
+uniform vec3 wall;              // cd/m2
+uniform float wall_distance_m;  // along the axis
+uniform vec3 around;            // what drops show without lamps, cd/m2
+
+float thickness(float x) { return frame.rain.z * x + frame.rain.x * max(x - frame.rain.y, 0.0); }
+
+// Equiangular steps about the lamp (Kulla and Fajardo 2012): x = c + h tan(eta).
+vec3 glow(LightGpu light, vec3 ray, float reach) {
+  const int steps = 48;
+  float c = dot(light.position_range.xyz, ray);
+  float h = max(length(cross(light.position_range.xyz, ray)), light.intensity_radius.w);
+  float first = atan(-c / h), last = atan((reach - c) / h);
+  float sum = 0.0;
+  for (int i = 0; i < steps; ++i) {
+    float eta = mix(first, last, (float(i) + 0.5) / float(steps));
+    float x = c + h * tan(eta), d2 = h * h / (cos(eta) * cos(eta));
+    float scattering = frame.rain.z + (x > frame.rain.y ? frame.rain.x : 0.0);
+    float cosine = -(x - c) * inversesqrt(d2);
+    int bin = min(int(sqrt(max(0.5 - 0.5 * cosine, 0.0)) * float(RAIN_PHASE_BINS)), RAIN_PHASE_BINS - 1);
+    float ratio = d2 / (light.position_range.w * light.position_range.w);
+    float window = clamp(1.0 - ratio * ratio, 0.0, 1.0);
+    sum += scattering * window * window * phase[bin] * exp(-thickness(x));
+  }
+  return light.intensity_radius.rgb * (sum * (last - first) / (float(steps) * h));
+}
 
 void main() {
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
   if (any(greaterThanEqual(pixel, ivec2(frame.size.xy)))) return;
-  float thickness = 0.0;
-  if (wall_distance_m > 0.0) {
-    float reach = length(relative_position(vec2(pixel) + 0.5, depth_of_axial_distance(wall_distance_m)));
-    thickness = frame.rain.z * reach + frame.rain.x * max(reach - frame.rain.y, 0.0);
-  }
-  imageStore(colour, pixel, vec4(mix(around, wall, exp(-thickness)), 1.0));
+  vec3 place = relative_position(vec2(pixel) + 0.5, depth_of_axial_distance(wall_distance_m));
+  float reach = length(place);
+  vec3 light = mix(around, wall, exp(-thickness(reach)));
+  for (uint i = 0u; i < frame.counts.x; ++i) light += glow(lights[i], place / reach, reach);
+  imageStore(colour, pixel, vec4(light, 1.0));
 }

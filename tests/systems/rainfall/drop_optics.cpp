@@ -21,7 +21,9 @@ TEST(DropOptics, EnergyOfTheOrders) {
   for (int k = 0; k < drop_ray_orders; ++k) EXPECT_NEAR(sums[k], expected[k], 1e-4) << k;
 }
 
-TEST(DropOptics, WidestRefraction) { EXPECT_NEAR(trace_sphere(1.0)[1].turn_rad * 180.0 / M_PI, 82.79, 0.01); }
+TEST(DropOptics, WidestRefraction) {
+  EXPECT_NEAR(trace_sphere(1.0)[1].turn_rad * 180.0 / M_PI, 82.79, 0.01);
+}
 
 TEST(DropOptics, PhaseHoldsTheEnergy) {
   const auto phase = make_drop_phase();
@@ -55,7 +57,9 @@ TEST(DropOptics, PhaseAgreesWithMonteCarlo) {
       found[std::min(coarse - 1, static_cast<int>(half * coarse))] += 1.0 / photons;
     };
     const bool across = random.uniform() < 0.5f;
-    const auto reflectance = [across](double cosine) { return across ? fresnel(cosine).across : fresnel(cosine).within; };
+    const auto reflectance = [across](double cosine) {
+      return across ? fresnel(cosine).across : fresnel(cosine).within;
+    };
     if (random.uniform() < reflectance(-glm::dot(direction, at))) {
       record(glm::reflect(direction, at));
       continue;
@@ -86,9 +90,9 @@ TEST(DropOptics, ForwardLobeIsClosedForm) {
   // grazing outer reflection, F / (4 pi). Bin 4 is a turn of 2 degrees.
   const double n = water_refractive_index, t = 1.0 - fresnel(1.0).across;
   const Fresnel grazing = fresnel(4.5 / 256.0);
-  EXPECT_NEAR(make_drop_phase()[4],
-              t * t * std::pow(n / (2.0 * (n - 1.0)), 2) / M_PI + 0.5 * (grazing.across + grazing.within) / (4.0 * M_PI),
-              0.01);
+  EXPECT_NEAR(
+      make_drop_phase()[4],
+      t * t * std::pow(n / (2.0 * (n - 1.0)), 2) / M_PI + 0.5 * (grazing.across + grazing.within) / (4.0 * M_PI), 0.01);
 }
 
 TEST(DropOptics, WhiteFurnace) {

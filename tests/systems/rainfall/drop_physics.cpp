@@ -12,10 +12,9 @@ struct Measured {
 };
 
 // Gunn and Kinzer 1949, typed here a second time.
-constexpr Measured gunn_kinzer[] = {
-    {0.1, 0.27}, {0.2, 0.72}, {0.3, 1.17}, {0.4, 1.62}, {0.5, 2.06}, {0.6, 2.47}, {0.8, 3.27}, {1.0, 4.03},
-    {1.4, 5.17}, {2.0, 6.49}, {2.6, 7.57}, {3.0, 8.06}, {3.6, 8.60}, {4.0, 8.83}, {4.6, 9.03}, {5.0, 9.09},
-    {5.4, 9.14}, {5.8, 9.17}};
+constexpr Measured gunn_kinzer[] = {{0.1, 0.27}, {0.2, 0.72}, {0.3, 1.17}, {0.4, 1.62}, {0.5, 2.06}, {0.6, 2.47},
+                                    {0.8, 3.27}, {1.0, 4.03}, {1.4, 5.17}, {2.0, 6.49}, {2.6, 7.57}, {3.0, 8.06},
+                                    {3.6, 8.60}, {4.0, 8.83}, {4.6, 9.03}, {5.0, 9.09}, {5.4, 9.14}, {5.8, 9.17}};
 
 TEST(TerminalSpeed, AgreesWithGunnAndKinzer) {
   for (const Measured& m : gunn_kinzer) EXPECT_NEAR(terminal_speed_mps(m.diameter_mm), m.speed_mps, 0.01 * m.speed_mps);

@@ -65,8 +65,10 @@ TEST(DropField, RateRampMovesNoDrop) {
     std::size_t lost = 0;
     for (const auto& [key, position] : before) {
       const auto found = now.find(key);
-      if (found == now.end()) ++lost;
-      else EXPECT_EQ(found->second, position);
+      if (found == now.end())
+        ++lost;
+      else
+        EXPECT_EQ(found->second, position);
     }
     EXPECT_EQ(lost, 0u) << rate;
     EXPECT_GT(now.size(), before.size());
@@ -119,7 +121,8 @@ TEST(DropField, DoesNotJitterFarOut) {
     });
     for (const RainLayerGpu& layer : layers.layers) {
       const RainClass& c = rain.classes[std::size_t(layer.first_cell.w >> 8)];
-      const glm::dvec3 exact = c.origin_m + glm::dvec3(glm::ivec3(layer.first_cell)) * double(layer.corner_edge.w) - camera;
+      const glm::dvec3 exact =
+          c.origin_m + glm::dvec3(glm::ivec3(layer.first_cell)) * double(layer.corner_edge.w) - camera;
       EXPECT_LT(glm::length(exact - glm::dvec3(layer.corner_edge)), 1e-5);
     }
   }
@@ -179,7 +182,8 @@ TEST(DropField, StandsAloneWhileTheWindStays) {
   extract_rainfall(ticked, a, 15.0);
   extract_rainfall(alone, b, 15.0);
   ASSERT_TRUE(a.rain && b.rain);
-  for (std::size_t k = 0; k < a.rain->classes.size(); ++k) EXPECT_EQ(a.rain->classes[k].origin_m, b.rain->classes[k].origin_m);
+  for (std::size_t k = 0; k < a.rain->classes.size(); ++k)
+    EXPECT_EQ(a.rain->classes[k].origin_m, b.rain->classes[k].origin_m);
 }
 
 }  // namespace

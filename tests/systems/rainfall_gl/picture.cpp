@@ -23,9 +23,7 @@ class RainPicture : public testing::Test {
     if (!context) GTEST_SKIP() << "no OpenGL 4.5";
     errors = gl_error_count();
   }
-  void TearDown() override {
-    EXPECT_EQ(context ? gl_error_count() : errors, errors) << last_gl_error();
-  }
+  void TearDown() override { EXPECT_EQ(context ? gl_error_count() : errors, errors) << last_gl_error(); }
 
   static std::unique_ptr<RainStage> stage(const StageSet& set) {
     auto made = RainStage::make(context->device().software, set);
@@ -62,8 +60,8 @@ struct Seen {
   double mean = 0.0, deviation = 0.0;
 };
 
-Seen look(RainStage& stage, const Emitter& emitter, float fov_deg, float exposure_s, int frames, float distance_m = 0.0f,
-          float speed_mps = 0.0f) {
+Seen look(RainStage& stage, const Emitter& emitter, float fov_deg, float exposure_s, int frames,
+          float distance_m = 0.0f, float speed_mps = 0.0f) {
   const WindMotion motion = start_rain_motion(emitter, {});
   double sum = 0.0, squares = 0.0, count = 0.0;
   for (int i = 0; i < frames; ++i) {
@@ -96,7 +94,8 @@ double expected_transmittance(double extinction, double wall_m, double fov_deg) 
   double sum = 0.0;
   for (int y = 0; y < height; ++y)
     for (int x = 0; x < width; ++x) {
-      const double u = ((x + 0.5) / width * 2.0 - 1.0) * tall * width / height, v = ((y + 0.5) / height * 2.0 - 1.0) * tall;
+      const double u = ((x + 0.5) / width * 2.0 - 1.0) * tall * width / height,
+                   v = ((y + 0.5) / height * 2.0 - 1.0) * tall;
       sum += std::exp(-extinction * wall_m * std::sqrt(1.0 + u * u + v * v));
     }
   return sum / (width * height);

@@ -1,10 +1,9 @@
-#include "systems/wind_motion.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "systems/rainfall/drop_physics.hpp"
+#include "systems/wind_motion.hpp"
 
 namespace petrichor {
 namespace {
