@@ -27,42 +27,68 @@ bool touches(mat4 clip, vec3 centre, vec3 extent) {
   return dot(rows[3].xyz, centre) + rows[3].w + dot(abs(rows[3].xyz), extent) > distances.x;
 }
 
-void main() {
-  uint index = (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * 64u + gl_LocalInvocationID.x;
-  if (index >= candidates) return;
+// Whether the view sees the candidate, and what is known of it.
+bool examine(uint index, out RainCellGpu result) {
   uint l = find_layer(index);
   RainLayerGpu layer = layers[l];
   uvec3 cell = cell_in_box(layer, index);
   float edge = layer.corner_edge.w;
   vec3 corner = layer.corner_edge.xyz + vec3(cell) * edge;
+  result.corner_edge = vec4(corner, edge);
 
   // The cell's own drops, and where they were when the shutter opened.
   vec3 swept = -layer.velocity_diameter.xyz * frame.camera_velocity_mps.w;
   vec3 low = corner + min(swept, 0.0), high = corner + edge + max(swept, 0.0);
   vec3 nearest = max(max(corner, -(corner + edge)), 0.0);
-  if (dot(nearest, nearest) > distances.z * distances.z) return;
+  if (dot(nearest, nearest) > distances.z * distances.z) return false;
   vec3 centre = 0.5 * (low + high), extent = 0.5 * (high - low);
   if (!touches(frame.view_projection, centre, extent) &&
-      !(camera_moves && touches(frame.shutter_view_projection, centre, extent))) return;
+      !(camera_moves && touches(frame.shutter_view_projection, centre, extent))) return false;
 
-#ifndef SOFTWARE
+#ifdef SOFTWARE  // counts and lamps come in the next pass, which has fewer cells to look at
+  result.key = uvec4(cell, l);
+#else
   uvec3 key;
   uint count = drops_of_cell(layer, cell, key);
-  if (count == 0u) return;
-
-  uvec4 lights_here;
-  int light_count = lights_of_cell(corner + 0.5 * edge + 0.5 * swept, length(extent), lights_here);
+  if (count == 0u) return false;
+  int light_count = lights_of_cell(corner + 0.5 * edge + 0.5 * swept, length(extent), result.lights);
+  result.key = uvec4(key, count << 16u | uint(light_count) << 12u | l);
 #endif
+  return true;
+}
 
+#ifdef SOFTWARE
+void main() {
+  uint index = (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * 64u + gl_LocalInvocationID.x;
+  RainCellGpu cell;
+  if (index >= candidates || !examine(index, cell)) return;
   uint slot = atomicAdd(cell_count, 1u);
   if (slot >= capacity) return;
-  cells[slot].corner_edge = vec4(corner, edge);
-#ifdef SOFTWARE  // counts and lamps come in the next pass, which has fewer cells to look at
-  cells[slot].key = uvec4(cell, l);
-#else
-  const uint per_row = uint(RAIN_COMMAND_WIDTH * (RAIN_SPLAT_GROUP / RAIN_LANES));
-  if (slot % per_row == 0u) atomicMax(groups_y, slot / per_row + 1u);
-  cells[slot].key = uvec4(key, count << 16u | uint(light_count) << 12u | l);
-  cells[slot].lights = lights_here;
-#endif
+  cells[slot].corner_edge = cell.corner_edge;
+  cells[slot].key = cell.key;
 }
+#else
+shared uint group_cells, group_first;
+
+// One global atomic a work group: a million on one address would take longer than all else here.
+void main() {
+  uint index = (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * 64u + gl_LocalInvocationID.x;
+  if (gl_LocalInvocationIndex == 0u) group_cells = 0u;
+  barrier();
+  RainCellGpu cell;
+  bool seen = index < candidates && examine(index, cell);
+  uint slot = 0u;
+  if (seen) slot = atomicAdd(group_cells, 1u);
+  barrier();
+  if (gl_LocalInvocationIndex == 0u && group_cells > 0u) {
+    group_first = atomicAdd(cell_count, group_cells);
+    const uint per_row = uint(RAIN_COMMAND_WIDTH * (RAIN_SPLAT_GROUP / RAIN_LANES));
+    uint last = min(group_first + group_cells, capacity) - 1u;
+    if (group_first < capacity && (group_first % per_row == 0u || last / per_row != group_first / per_row)) {
+      atomicMax(groups_y, last / per_row + 1u);
+    }
+  }
+  barrier();
+  if (seen && group_first + slot < capacity) cells[group_first + slot] = cell;
+}
+#endif
