@@ -13,9 +13,11 @@
 #include <glm/glm.hpp>
 #define AIRLIGHT_FN inline
 namespace petrichor::airlight {
-using glm::abs, glm::cos, glm::cross, glm::dot, glm::exp, glm::inversesqrt, glm::length, glm::max, glm::min, glm::sin, glm::sqrt,
-    glm::vec2, glm::vec3, glm::vec4;
-inline float atan(float y, float x) { return std::atan2(y, x); }
+using glm::abs, glm::cos, glm::cross, glm::dot, glm::exp, glm::inversesqrt, glm::length, glm::max, glm::min, glm::sin,
+    glm::sqrt, glm::vec2, glm::vec3, glm::vec4;
+inline float atan(float y, float x) {
+  return std::atan2(y, x);
+}
 #else
 #define AIRLIGHT_FN
 #endif

@@ -9,7 +9,7 @@
 namespace petrichor {
 namespace {
 
-constexpr int list_tile = 8;         // airlight pixels per side of a list's tile
+constexpr int list_tile = 8;           // airlight pixels per side of a list's tile
 constexpr float sky_reach_m = 400.0f;  // rays that meet nothing gather light so far
 constexpr float mist_height_m = 80.0f;
 constexpr float street_height_m = 12.0f;
@@ -39,7 +39,8 @@ PassOffer airlight() {
           [state](PassContext& context) {
             const Texture& target = context.texture("airlight");
             const float scale = static_cast<float>(context.width) / static_cast<float>(target.width);
-            const int across = (target.width + list_tile - 1) / list_tile, down = (target.height + list_tile - 1) / list_tile;
+            const int across = (target.width + list_tile - 1) / list_tile,
+                      down = (target.height + list_tile - 1) / list_tile;
             if (state->lists.width != across || state->lists.height != down)
               state->lists = make_texture_2d(across, down, GL_RGBA32UI);
 

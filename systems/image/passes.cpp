@@ -78,7 +78,8 @@ PassOffer tonemap(std::string name, std::string meaning, std::string target, std
 
 void antialias(Buffer& edges, PassContext& context) {
   const unsigned header[4] = {0, 1, 1, 0};
-  const std::size_t bytes = sizeof header + sizeof(unsigned) * static_cast<std::size_t>(context.width) * static_cast<std::size_t>(context.height);
+  const std::size_t bytes = sizeof header + sizeof(unsigned) * static_cast<std::size_t>(context.width) *
+                                                static_cast<std::size_t>(context.height);
   if (edges.bytes < bytes) edges = make_buffer(bytes);
   glNamedBufferSubData(edges.id, 0, sizeof header, header);
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, edges_binding, edges.id);
@@ -103,14 +104,14 @@ void antialias(Buffer& edges, PassContext& context) {
 
 std::vector<PassOffer> image_passes() {
   std::vector<PassOffer> offers;
-  offers.push_back({"bloom",
-                    "light that the lens scatters, as a sum of Gaussians",
-                    {{"colour", SlotAccess::read}, {"bloom", SlotAccess::write}},
-                    {{"spread", 0.6}},  // share of each coarser level
-                    {{"down", {{"systems/image/bloom_down.comp.glsl"}, {}}},
-                     {"up", {{"systems/image/bloom_up.comp.glsl"}, {}}}},
-                    [](const Frame& frame) { return frame.camera.bloom > 0.0f; },
-                    blur});
+  offers.push_back(
+      {"bloom",
+       "light that the lens scatters, as a sum of Gaussians",
+       {{"colour", SlotAccess::read}, {"bloom", SlotAccess::write}},
+       {{"spread", 0.6}},  // share of each coarser level
+       {{"down", {{"systems/image/bloom_down.comp.glsl"}, {}}}, {"up", {{"systems/image/bloom_up.comp.glsl"}, {}}}},
+       [](const Frame& frame) { return frame.camera.bloom > 0.0f; },
+       blur});
   offers.push_back(tonemap("tonemap", "exposure and film curve", "display", {}));
   offers.push_back(tonemap("tonemap8", "exposure, film curve and dither to 8 bits", "picture", {"FINAL"}));
   offers.push_back({"antialias",

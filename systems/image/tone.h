@@ -11,12 +11,16 @@ using glm::clamp, glm::dot, glm::fract, glm::max, glm::min, glm::mix, glm::vec2,
 #define TONE_FN
 #endif
 
-TONE_FN float luminance(vec3 c) { return dot(c, vec3(0.2126f, 0.7152f, 0.0722f)); }
+TONE_FN float luminance(vec3 c) {
+  return dot(c, vec3(0.2126f, 0.7152f, 0.0722f));
+}
 
 // A film print's curve as a ratio of quadratics, its sRGB encoding included (the form of Hejl and Burgess-Dawson,
 // GDC 2010, without its black offset): 0 -> 0, 0.18 -> 0.51, 1 -> 0.84, and towards 1 for ever. Its toe is a
 // little darker than sRGB's: nights keep their blacks, and no value is crushed.
-TONE_FN vec3 film_curve(vec3 x) { return (x * (x * 6.2f + 0.5f)) / (x * (x * 6.2f + 1.7f) + 0.06f); }
+TONE_FN vec3 film_curve(vec3 x) {
+  return (x * (x * 6.2f + 0.5f)) / (x * (x * 6.2f + 1.7f) + 0.06f);
+}
 
 // Exposed linear light -> display values in [0, 1). Strong lights bleed into the other channels before the curve,
 // so that a neon tube turns pale where it is brightest and keeps its hue around (the idea of Sobotka's AgX).

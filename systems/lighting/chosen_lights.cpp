@@ -12,7 +12,9 @@ namespace {
 
 constexpr float longest_reach_m = 60.0f;
 
-float strongest(const FrameLight& light) { return std::max({light.intensity.x, light.intensity.y, light.intensity.z}); }
+float strongest(const FrameLight& light) {
+  return std::max({light.intensity.x, light.intensity.y, light.intensity.z});
+}
 
 LightGpu relative_light(const FrameLight& light, const Frame& frame, int slot) {
   const glm::vec3 position(glm::dvec3(light.position_m) - frame.camera.position_m);

@@ -13,12 +13,18 @@ struct CubeFace {
 inline CubeFace cube_face(int face) {
   static constexpr glm::vec3 x{1, 0, 0}, y{0, 1, 0}, z{0, 0, 1};
   switch (face) {
-    case 0: return {z, y, x};
-    case 1: return {-z, y, -x};
-    case 2: return {x, z, y};
-    case 3: return {-x, z, -y};
-    case 4: return {-x, y, z};
-    default: return {x, y, -z};
+    case 0:
+      return {z, y, x};
+    case 1:
+      return {-z, y, -x};
+    case 2:
+      return {x, z, y};
+    case 3:
+      return {-x, z, -y};
+    case 4:
+      return {-x, y, z};
+    default:
+      return {x, y, -z};
   }
 }
 

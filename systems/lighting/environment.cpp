@@ -14,7 +14,7 @@ namespace {
 
 constexpr float quarter_turn = 1.57079632679f;
 constexpr float capture_near_m = 0.1f;
-constexpr float eye_level_m = 2.0f;    // of the lowest storey of the grid
+constexpr float eye_level_m = 2.0f;  // of the lowest storey of the grid
 constexpr std::size_t most_probes = 12;
 
 void make_targets(EnvironmentProbe& probe) {

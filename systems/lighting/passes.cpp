@@ -69,10 +69,10 @@ PassOffer environment(State state) {
           {},
           [state](PassContext& context) {
             const bool shadows = context.has("shadow_atlas");
-            const EnvironmentPrograms programs{context.program("surfaces"),
-                                               context.program(shadows ? "light_shadows" : "light"),
-                                               context.program("filter"), context.program("harmonics"),
-                                               context.program("diffuse"), context.program("blend")};
+            const EnvironmentPrograms programs{
+                context.program("surfaces"), context.program(shadows ? "light_shadows" : "light"),
+                context.program("filter"),   context.program("harmonics"),
+                context.program("diffuse"),  context.program("blend")};
             update_environment(state->environment, context.frame, context.parameter("spacing_m"),
                                shadows ? &context.texture("shadow_atlas") : nullptr, shadow_slots(*state, context),
                                programs, context.texture("environment"));

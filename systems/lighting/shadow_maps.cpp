@@ -29,7 +29,8 @@ void make_targets(ShadowMaps& maps) {
 // Whether any of a spot's light falls on this face of the cube round it.
 bool lights_face(const FrameLight& light, int face) {
   if (light.kind != LIGHT_SPOT) return true;
-  const float angle = std::acos(std::clamp(glm::dot(glm::normalize(light.direction), cube_face(face).forward), -1.0f, 1.0f));
+  const float angle =
+      std::acos(std::clamp(glm::dot(glm::normalize(light.direction), cube_face(face).forward), -1.0f, 1.0f));
   return angle < light.outer_cone_rad + face_corner_rad;
 }
 
@@ -66,7 +67,8 @@ void draw_map(ShadowMaps& maps, const FrameLight& light, Frame& around_light, in
   glGenerateTextureMipmap(maps.tile.id);
 
   programs.pack.use();
-  programs.pack.set("tile_origin", glm::ivec2(slot % SHADOW_TILES_PER_SIDE, slot / SHADOW_TILES_PER_SIDE) * SHADOW_TILE);
+  programs.pack.set("tile_origin",
+                    glm::ivec2(slot % SHADOW_TILES_PER_SIDE, slot / SHADOW_TILES_PER_SIDE) * SHADOW_TILE);
   glBindTextureUnit(0, maps.tile.id);
   glBindImageTexture(0, atlas.id, 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RGBA32F);
   programs.pack.dispatch(SHADOW_TILE, SHADOW_TILE);
@@ -76,8 +78,8 @@ void draw_map(ShadowMaps& maps, const FrameLight& light, Frame& around_light, in
 }  // namespace
 
 bool ShadowMaps::Tile::same_light(const Tile& other) const {
-  return filled && other.filled && position_m == other.position_m && direction == other.direction && kind == other.kind &&
-         outer_cone_rad == other.outer_cone_rad && reach_m == other.reach_m;
+  return filled && other.filled && position_m == other.position_m && direction == other.direction &&
+         kind == other.kind && outer_cone_rad == other.outer_cone_rad && reach_m == other.reach_m;
 }
 
 void update_shadow_maps(ShadowMaps& maps, const Frame& frame, const Texture& atlas, bool fresh,
@@ -97,8 +99,8 @@ void update_shadow_maps(ShadowMaps& maps, const Frame& frame, const Texture& atl
   for (std::size_t slot = 0; slot < casters.size(); ++slot) {
     const FrameLight& light = frame.lights[casters[slot]];
     maps.slots[casters[slot]] = static_cast<int>(slot);
-    const ShadowMaps::Tile wanted{true, light.position_m, light.direction, light.outer_cone_rad, shadow_reach_m(light),
-                                  light.kind};
+    const ShadowMaps::Tile wanted{
+        true, light.position_m, light.direction, light.outer_cone_rad, shadow_reach_m(light), light.kind};
     if (maps.tiles[slot].same_light(wanted)) continue;
     if (!around_light.scene) {
       around_light.scene = frame.scene;

@@ -11,7 +11,7 @@ struct LightingState {
   ShadowMaps shadows;
   Environment environment;
   Buffer chosen_lights;
-  Buffer tiles;            // TILES_BINDING
+  Buffer tiles;              // TILES_BINDING
   unsigned list_length = 0;  // tiles that each of its lists can hold
 };
 

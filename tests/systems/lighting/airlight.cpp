@@ -12,7 +12,9 @@ namespace {
 
 using namespace petrichor::airlight;
 
-double phase(double cosine, double q) { return (1 - q * q) / (4 * M_PI * std::pow(1 + q * q - 2 * q * cosine, 1.5)); }
+double phase(double cosine, double q) {
+  return (1 - q * q) / (4 * M_PI * std::pow(1 + q * q - 2 * q * cosine, 1.5));
+}
 
 // Single scattering along the ray, by Simpson's rule on x = c + h sinh(t), whose steps shrink towards the lamp.
 double truth(double distance, double angle, double end, double extinction, double q) {
@@ -61,7 +63,7 @@ TEST(Airlight, StreetCasesAreWithinAFewPercentOfTruth) {
   }
   std::sort(errors.begin(), errors.end());
   EXPECT_LT(errors[500], 0.005);
-  EXPECT_LT(errors[950], 0.03);   // physics 4c: six points 0.9 % at q = 0.9
+  EXPECT_LT(errors[950], 0.03);  // physics 4c: six points 0.9 % at q = 0.9
   EXPECT_LT(errors.back(), 0.12);
 }
 
@@ -69,15 +71,16 @@ TEST(Airlight, FailingCasesOfOthersHold) {
   struct Case {
     double distance, angle, end, extinction;
   };
-  for (const Case& k : {Case{20, 1e-3, 15, 0.01},     // almost looking at the lamp, a wall before it
-                        Case{20, 1e-3, 40, 0.01},     // and a wall behind it
-                        Case{20, 0.05, 20.5, 0.01},   // the ray ends just past the lamp
-                        Case{60, 2.6, 100, 0.2},      // thick, and looking away: others go negative here
+  for (const Case& k : {Case{20, 1e-3, 15, 0.01},    // almost looking at the lamp, a wall before it
+                        Case{20, 1e-3, 40, 0.01},    // and a wall behind it
+                        Case{20, 0.05, 20.5, 0.01},  // the ray ends just past the lamp
+                        Case{60, 2.6, 100, 0.2},     // thick, and looking away: others go negative here
                         Case{5, 3.1, 50, 0.02}}) {
     const double t = truth(k.distance, k.angle, k.end, k.extinction, 0.8);
     const double o = ours(k.distance, k.angle, k.end, k.extinction, 0.8);
     EXPECT_GT(o, 0.0);
-    // Five points: 10 % where the forward peak is looked into; thick air bends the integrand more, but there it is dark.
+    // Five points: 10 % where the forward peak is looked into; thick air bends the integrand more, but there it is
+    // dark.
     EXPECT_NEAR(o / t, 1.0, k.extinction > 0.1 ? 0.35 : 0.1) << k.distance << " " << k.angle;
   }
 }

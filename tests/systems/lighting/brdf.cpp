@@ -25,8 +25,8 @@ TEST(Brdf, FresnelOfWaterIsExactToOnePercentOfLight) {
     worst = std::max(worst, std::abs(fresnel(vec3(f0), static_cast<float>(c), 1.0f).x - truth));
     worst_schlick = std::max(worst_schlick, std::abs(f0 + (1 - f0) * std::pow(1 - c, 5) - truth));
   }
-  EXPECT_LT(worst, 0.012);                 // physics 3: 0.010 with the published power
-  EXPECT_GT(worst_schlick, 3.0 * worst);   // or the correction would not be worth its cost
+  EXPECT_LT(worst, 0.012);                // physics 3: 0.010 with the published power
+  EXPECT_GT(worst_schlick, 3.0 * worst);  // or the correction would not be worth its cost
 }
 
 // Directional albedo of the specular lobe with every facet a mirror, by quadrature over half vectors: with
@@ -41,7 +41,8 @@ double furnace(double roughness, double n_dot_v) {
     const double cosine = std::sqrt((1.0 - u) / (1.0 + (a2 - 1.0) * u)), sine = std::sqrt(1.0 - cosine * cosine);
     for (int j = 0; j < turns; ++j) {
       const double phi = 2.0 * M_PI * (j + 0.5) / turns;
-      const vec3 h(static_cast<float>(sine * std::cos(phi)), static_cast<float>(cosine), static_cast<float>(sine * std::sin(phi)));
+      const vec3 h(static_cast<float>(sine * std::cos(phi)), static_cast<float>(cosine),
+                   static_cast<float>(sine * std::sin(phi)));
       const float v_dot_h = dot(v, h);
       const vec3 l = 2.0f * v_dot_h * h - v;
       if (l.y <= 0.0f || v_dot_h <= 0.0f) continue;
@@ -90,7 +91,8 @@ TEST(Brdf, SphereLightKeepsItsEnergy) {
   for (const float alpha : {0.01f, 0.1f, 0.4f}) {
     const vec2 lobe = sphere_light_lobe(alpha, 0.15f, 1.0f / 6.0f);
     EXPECT_GE(lobe.x, alpha);
-    EXPECT_NEAR(ggx_distribution(1.0f, lobe.x * lobe.x) / ggx_distribution(1.0f, alpha * alpha), lobe.y, 1e-3f * lobe.y);
+    EXPECT_NEAR(ggx_distribution(1.0f, lobe.x * lobe.x) / ggx_distribution(1.0f, alpha * alpha), lobe.y,
+                1e-3f * lobe.y);
   }
   const vec3 mirror = normalize(vec3(0.0f, 1.0f, -1.0f));
   const vec3 centre = mirror * 5.0f + vec3(0.05f, 0.0f, 0.0f);

@@ -34,7 +34,8 @@ float floor_radiance(float lux, float roughness) {
   const shading::vec2 fit = shading::ggx_albedo(roughness, 1.0f);
   const float reflected = shading::DIELECTRIC_F0 * fit.x + fit.y;
   const float a = roughness * roughness;
-  const float lobe = shading::ggx_distribution(1.0f, a * a) * shading::smith_visibility(1.0f, 1.0f, a * a) * shading::DIELECTRIC_F0;
+  const float lobe =
+      shading::ggx_distribution(1.0f, a * a) * shading::smith_visibility(1.0f, 1.0f, a * a) * shading::DIELECTRIC_F0;
   return lux * (0.5f * (1.0f - reflected) / pi + lobe);
 }
 
@@ -69,12 +70,14 @@ TEST_F(Lighting, SpotsFollowTheKhronosCone) {
   stage.frame.lights = {spot};
   const auto with = stage.draw(lamps_only(), "colour");
   ASSERT_EQ(with.size(), without.size());
-  const float per_pixel = 2.0f * 4.0f * std::tan(0.5f * stage.frame.camera.vertical_fov_rad) / static_cast<float>(stage.height);
+  const float per_pixel =
+      2.0f * 4.0f * std::tan(0.5f * stage.frame.camera.vertical_fov_rad) / static_cast<float>(stage.height);
   for (int x = 0; x < stage.width; x += 3) {
     const std::size_t i = static_cast<std::size_t>(stage.height / 2 * stage.width + x);
     const float dx = (static_cast<float>(x - stage.width / 2) + 0.5f) * per_pixel, dy = 0.5f * per_pixel;
     const float cosine = height / std::sqrt(height * height + dx * dx + dy * dy);
-    const float edge = std::clamp((cosine - std::cos(outer)) / std::max(0.001f, std::cos(inner) - std::cos(outer)), 0.0f, 1.0f);
+    const float edge =
+        std::clamp((cosine - std::cos(outer)) / std::max(0.001f, std::cos(inner) - std::cos(outer)), 0.0f, 1.0f);
     EXPECT_NEAR(with[i].x / without[i].x, edge * edge, 0.01f) << x;
   }
 }
@@ -189,7 +192,9 @@ TEST_F(Lighting, TileListsLoseNoVisibleLight) {
   Stage stage(awning(), 160, 120);
   stage.look({0, 1.6f, 6}, {0, 0.5f, 0});
   for (int i = 0; i < 60; ++i) {
-    FrameLight light = lamp({-9.0f + 0.3f * static_cast<float>(i), 0.5f + 0.07f * static_cast<float>(i % 7), -8.0f + static_cast<float>(i % 13)}, 3.0f + static_cast<float>(i % 5));
+    FrameLight light = lamp({-9.0f + 0.3f * static_cast<float>(i), 0.5f + 0.07f * static_cast<float>(i % 7),
+                             -8.0f + static_cast<float>(i % 13)},
+                            3.0f + static_cast<float>(i % 5));
     light.casts_shadow = i % 10 == 0;
     stage.frame.lights.push_back(light);
   }
@@ -249,7 +254,8 @@ TEST_F(Lighting, MistGlowsRoundALampAndFadesWithDistanceFromIt) {
   const float angle = 0.1745f;
   const float expected = 1000.0f * airlight::airlight(20.0f * std::cos(angle), 20.0f * std::sin(angle), 0.0f,
                                                       40.0f / std::cos(angle), 0.01f, 0.01f, 0.8f);
-  EXPECT_NEAR(at(static_cast<int>(std::tan(angle) * pixels_per_rad)) / expected, 1.0f, 0.15f);  // a quarter of the resolution
+  EXPECT_NEAR(at(static_cast<int>(std::tan(angle) * pixels_per_rad)) / expected, 1.0f,
+              0.15f);  // a quarter of the resolution
   EXPECT_GT(at(10), at(20));
   EXPECT_GT(at(20), at(40));
 }
@@ -260,7 +266,8 @@ TEST_F(Lighting, ClearAirRunsNoAirlight) {
   stage.frame.lights = {lamp({0, 4, 0}, 300.0f)};
   stage.draw(full_table(), "picture");
   for (const PassReport& report : stage.graph->report())
-    EXPECT_EQ(report.culled, report.name == "airlight" || report.name == "bloom" || report.name == "shadow_maps") << report.name << " " << report.reason;
+    EXPECT_EQ(report.culled, report.name == "airlight" || report.name == "bloom" || report.name == "shadow_maps")
+        << report.name << " " << report.reason;
 }
 
 TEST_F(Lighting, SurroundingsLightWhatNoLampReaches) {
@@ -269,8 +276,10 @@ TEST_F(Lighting, SurroundingsLightWhatNoLampReaches) {
   Model model;
   const Look glow{glm::vec3(0.0f), 1.0f, glm::vec3(1.0f)};
   add_box(model, {-9, -9, -9}, {9, -8, 9}, {glm::vec3(0.5f)});
-  for (const auto& [low, high] : {std::pair{glm::vec3(-9, 8, -9), glm::vec3(9, 9, 9)}, {glm::vec3(-9, -9, -9), glm::vec3(-8, 9, 9)},
-                                  {glm::vec3(8, -9, -9), glm::vec3(9, 9, 9)}, {glm::vec3(-9, -9, -9), glm::vec3(9, 9, -8)},
+  for (const auto& [low, high] : {std::pair{glm::vec3(-9, 8, -9), glm::vec3(9, 9, 9)},
+                                  {glm::vec3(-9, -9, -9), glm::vec3(-8, 9, 9)},
+                                  {glm::vec3(8, -9, -9), glm::vec3(9, 9, 9)},
+                                  {glm::vec3(-9, -9, -9), glm::vec3(9, 9, -8)},
                                   {glm::vec3(-9, -9, 8), glm::vec3(9, 9, 9)}})
     add_box(model, low, high, glow);
   Stage stage(model);
@@ -297,7 +306,8 @@ TEST_F(Lighting, BloomKeepsTheSumOfLight) {
   EXPECT_GT(before, 1000.0);
   EXPECT_NEAR(after / before, 1.0, 0.02);
   float far_from_lamp = 0.0f;
-  for (int x = 0; x < 20; ++x) far_from_lamp = std::max(far_from_lamp, bloom[static_cast<std::size_t>(128 * 256 + 128 + 60 + x)].x);
+  for (int x = 0; x < 20; ++x)
+    far_from_lamp = std::max(far_from_lamp, bloom[static_cast<std::size_t>(128 * 256 + 128 + 60 + x)].x);
   EXPECT_GT(far_from_lamp, 0.0f);
 }
 
@@ -319,7 +329,8 @@ TEST_F(Lighting, AntialiasingMovesEdgesTowardsTheirCoverage) {
   for (int y = 0; y < 128; ++y)
     for (int x = 0; x < 192; ++x) {
       double mean = 0.0;
-      for (int k = 0; k < 64; ++k) mean += truth[static_cast<std::size_t>((y * 8 + k / 8) * 192 * 8 + x * 8 + k % 8)].x / 64.0;
+      for (int k = 0; k < 64; ++k)
+        mean += truth[static_cast<std::size_t>((y * 8 + k / 8) * 192 * 8 + x * 8 + k % 8)].x / 64.0;
       const std::size_t i = static_cast<std::size_t>(y * 192 + x);
       before += std::pow(raw[i].x - mean, 2.0);
       after += std::pow(smooth[i].x - mean, 2.0);

@@ -172,7 +172,8 @@ struct Stage {
     width = (*drawn)->width;
     height = (*drawn)->height;
     std::vector<glm::vec4> pixels(static_cast<std::size_t>(width * height));
-    glGetTextureImage((*drawn)->id, 0, GL_RGBA, GL_FLOAT, static_cast<GLsizei>(pixels.size() * sizeof(glm::vec4)), pixels.data());
+    glGetTextureImage((*drawn)->id, 0, GL_RGBA, GL_FLOAT, static_cast<GLsizei>(pixels.size() * sizeof(glm::vec4)),
+                      pixels.data());
     EXPECT_EQ(gl_error_count(), 0) << last_gl_error();
     return pixels;
   }

@@ -51,7 +51,8 @@ TEST(Tone, DitherHasNoBias) {
     double sum = 0.0;
     for (int y = 0; y < side; ++y)
       for (int x = 0; x < side; ++x)
-        sum += std::floor(255.0f * dithered(vec3(value), vec2(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f)).x + 0.5f);
+        sum += std::floor(
+            255.0f * dithered(vec3(value), vec2(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f)).x + 0.5f);
     EXPECT_NEAR(sum / (side * side), 255.0 * value, 5 * 0.29 / side) << value;
   }
 }
