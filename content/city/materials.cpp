@@ -13,7 +13,7 @@ namespace {
 using nlohmann::json;
 
 constexpr int palette_px = 64;
-constexpr float glow_strength_cd_m2 = 8000.0f;
+constexpr float glow_strength_cd_m2 = 3000.0f;
 
 const char* mat_name(Mat mat) {
   static const std::array<const char*, static_cast<std::size_t>(Mat::count)> names{

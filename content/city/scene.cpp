@@ -7,9 +7,9 @@ namespace petrichor::city {
 
 glm::vec3 emission_cd_m2(Glow glow) {
   switch (glow) {
-    case Glow::sodium: return {6500.0f, 3350.0f, 1050.0f};
-    case Glow::white: return {4600.0f, 4300.0f, 3700.0f};
-    case Glow::candle: return {1700.0f, 850.0f, 260.0f};
+    case Glow::sodium: return {2500.0f, 1290.0f, 400.0f};
+    case Glow::white: return {1900.0f, 1780.0f, 1530.0f};
+    case Glow::candle: return {900.0f, 450.0f, 140.0f};
     case Glow::neon_red: return {430.0f, 6.0f, 2.5f};
     case Glow::neon_pink: return {420.0f, 14.0f, 130.0f};
     case Glow::neon_blue: return {10.0f, 36.0f, 560.0f};
@@ -18,11 +18,11 @@ glm::vec3 emission_cd_m2(Glow glow) {
     case Glow::neon_amber: return {480.0f, 125.0f, 5.0f};
     case Glow::signal_red: return {1100.0f, 9.0f, 3.0f};
     case Glow::signal_green: return {8.0f, 850.0f, 300.0f};
-    case Glow::headlight: return {7600.0f, 6700.0f, 5200.0f};
+    case Glow::headlight: return {3000.0f, 2650.0f, 2050.0f};
     case Glow::taillight: return {320.0f, 2.6f, 1.2f};
     case Glow::clock: return {150.0f, 125.0f, 75.0f};
     case Glow::shop: return {220.0f, 140.0f, 62.0f};
-    case Glow::strip: return {1500.0f, 1550.0f, 1500.0f};
+    case Glow::strip: return {700.0f, 720.0f, 700.0f};
     case Glow::count: break;
   }
   return glm::vec3(0.0f);

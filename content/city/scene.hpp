@@ -40,7 +40,7 @@ enum class Glow : std::uint8_t {
   headlight, taillight, clock, shop, strip, count
 };
 
-// Emission palette, in cd/m2 (white point sRGB). Sources: lamp glass 3000-8000, neon 500-2000 cd/m2.
+// Emission palette, in cd/m2 (white point sRGB). A lamp's glass gives luminance x area = the candela of its light.
 glm::vec3 emission_cd_m2(Glow);
 // Roughness and metalness of a finish under a thin film of rain.
 glm::vec2 roughness_metalness(Finish);

@@ -28,7 +28,8 @@ const std::vector<Hollow>& hollows() {
     Dice dice{4242};
     for (int k = 0; k < 34; ++k) {
       const float z = dice.between(-58.0f, 58.0f);
-      out.push_back({{dice.between(-4.6f, 4.6f), z}, {dice.between(0.5f, 1.3f), dice.between(0.7f, 2.4f)}, dice.between(0.010f, 0.026f)});
+      const Hollow hollow{{dice.between(-4.6f, 4.6f), z}, {dice.between(0.5f, 1.3f), dice.between(0.7f, 2.4f)}, dice.between(0.010f, 0.026f)};
+      if (std::abs(hollow.centre_m.x) > 2.5f || z < 18.0f || z > 26.0f) out.push_back(hollow);  // not underfoot of view_crossing
     }
     for (int k = 0; k < 24; ++k) {
       const float x = dice.between(8.0f, 58.0f) * (dice.chance(0.5f) ? 1.0f : -1.0f);
