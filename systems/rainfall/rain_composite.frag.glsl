@@ -11,9 +11,8 @@ void main() {
   units = (pixel.y & 1) == 0 ? units & 0xffffu : units >> 16u;
   uvec3 lamp = uvec3(0u);
 #ifdef LAMPS
-  uint i = 4u * ((uint(pixel.y) >> 1u) * size_x + uint(pixel.x));
+  uint i = 4u * (uint(pixel.y) * size_x + uint(pixel.x));
   lamp = uvec3(radiance[i], radiance[i + 1u], radiance[i + 2u]);
-  lamp = (pixel.y & 1) == 0 ? lamp & 0xffffu : lamp >> 16u;
 #endif
   over = rain_over(pixel, units, lamp);
 }

@@ -33,16 +33,11 @@ using glm::vec4;
 
 // Sums in fixed point. Optical depth: 16 bits a pixel, two rows in a word; 1 is 2^12, so a pixel holds 16 e-folds: a
 // drop adds at most 3.9, all the rain of a downpour to 100 m adds 0.5. Radiance times optical depth: 32 bits, in
-// output units (1 is white); 1 is 2^14, so a pixel holds 262,144 times white and one drop at most 2048. In software,
-// where every atomic counts, it is 16 bits in steps of 2^-10: 64 times white, and one drop at most 16.
+// output units (1 is white); 1 is 2^14, so a pixel holds 262,144 times white. No clamp below that: half of a lamp's
+// halo is drops hundreds of times brighter than white that each cover a thousandth of a pixel's time.
 #define RAIN_DEPTH_ONE 4096.0
-#ifdef SOFTWARE
-#define RAIN_RADIANCE_ONE 1024.0
-#define RAIN_RADIANCE_MOST 16.0
-#else
 #define RAIN_RADIANCE_ONE 16384.0
-#define RAIN_RADIANCE_MOST 2048.0
-#endif
+#define RAIN_RADIANCE_MOST 16384.0  // a single drop's radiance ends here; together with its depth (3.9 at most) 64,000
 
 // One layer of one class: a box of cells that may be seen.
 struct RainLayerGpu {

@@ -12,7 +12,7 @@
 // Two rows share a word, the even one in its low half: streaks stand rather than lie, so one atomic serves both.
 layout(std430, binding = RAIN_OPTICAL_DEPTH_BINDING) buffer RainOpticalDepth { uint optical_depth[]; };
 #ifdef LAMPS
-layout(std430, binding = RAIN_RADIANCE_BINDING) buffer RainRadiance { uint radiance[]; };  // r, g, b, -; a pixel, or in software two rows
+layout(std430, binding = RAIN_RADIANCE_BINDING) buffer RainRadiance { uint radiance[]; };  // 4 per pixel: r, g, b, -
 #endif
 #if defined(SCENE) && !defined(SYSTEMS_RAINFALL_STREAK_GLSL)
 layout(binding = 0) uniform sampler2D scene_depth;
@@ -55,12 +55,6 @@ void add(ivec2 pixel, vec2 amounts, float depth) {
   uint at = (uint(pixel.y) >> 1u) * size.x + uint(pixel.x);
   if (word != 0u) atomicAdd(optical_depth[at], word);
 #ifdef LAMPS
-#ifdef SOFTWARE
-  uvec3 lamp = (lamp0 | lamp1 << 16u) << (16u * uint(pixel.y & 1));
-  if (lamp.r != 0u) atomicAdd(radiance[4u * at], lamp.r);
-  if (lamp.g != 0u) atomicAdd(radiance[4u * at + 1u], lamp.g);
-  if (lamp.b != 0u) atomicAdd(radiance[4u * at + 2u], lamp.b);
-#else
   if (any_lamp == 0u) return;
   at = 4u * (uint(pixel.y) * size.x + uint(pixel.x));
   if (lamp0.r != 0u) atomicAdd(radiance[at], lamp0.r);
@@ -71,7 +65,6 @@ void add(ivec2 pixel, vec2 amounts, float depth) {
   if (lamp1.r != 0u) atomicAdd(radiance[at], lamp1.r);
   if (lamp1.g != 0u) atomicAdd(radiance[at + 1u], lamp1.g);
   if (lamp1.b != 0u) atomicAdd(radiance[at + 2u], lamp1.b);
-#endif
 #endif
 }
 
