@@ -29,8 +29,31 @@ Atlas shopfront_atlas();
 UvRect goods_rect(Goods);
 
 enum class Sign {
-  books, cafe, bakery, tailor, antiques, wines, clocks, florist, barber, pharmacy, toys, street_main, street_cross,
-  bus_stop, news, telephone, hotel, number_plate, poster_concert, poster_sea, clock_face, hanging_bear, taxi, cinema, count
+  books,
+  cafe,
+  bakery,
+  tailor,
+  antiques,
+  wines,
+  clocks,
+  florist,
+  barber,
+  pharmacy,
+  toys,
+  street_main,
+  street_cross,
+  bus_stop,
+  news,
+  telephone,
+  hotel,
+  number_plate,
+  poster_concert,
+  poster_sea,
+  clock_face,
+  hanging_bear,
+  taxi,
+  cinema,
+  count
 };
 Atlas sign_atlas();
 UvRect sign_rect(Sign);

@@ -27,7 +27,9 @@ glm::vec2 plane_uv(glm::vec3 p, glm::vec3 normal) {
   return {glm::dot(p, u), glm::dot(p, v)};
 }
 
-bool uses_palette(Mat mat) { return mat == Mat::plain || mat == Mat::glow; }
+bool uses_palette(Mat mat) {
+  return mat == Mat::plain || mat == Mat::glow;
+}
 
 glm::vec3 perpendicular(glm::vec3 direction) {
   const glm::vec3 helper = std::abs(direction.y) < 0.9f ? glm::vec3(0, 1, 0) : glm::vec3(1, 0, 0);
@@ -36,9 +38,15 @@ glm::vec3 perpendicular(glm::vec3 direction) {
 
 }  // namespace
 
-Paint plain(glm::vec3 colour, Finish finish) { return {Mat::plain, colour, palette_cell(static_cast<int>(finish))}; }
-Paint glow(Glow colour) { return {Mat::glow, glm::vec3(1.0f), palette_cell(static_cast<int>(colour))}; }
-Paint tiling(Mat mat, glm::vec3 tint, glm::vec2 offset_m) { return {mat, tint, offset_m}; }
+Paint plain(glm::vec3 colour, Finish finish) {
+  return {Mat::plain, colour, palette_cell(static_cast<int>(finish))};
+}
+Paint glow(Glow colour) {
+  return {Mat::glow, glm::vec3(1.0f), palette_cell(static_cast<int>(colour))};
+}
+Paint tiling(Mat mat, glm::vec3 tint, glm::vec2 offset_m) {
+  return {mat, tint, offset_m};
+}
 
 Builder::Builder(Mesh& mesh, const glm::mat4& frame) : mesh_(&mesh), frame_(frame), turn_(glm::mat3(frame)) {}
 

@@ -14,7 +14,7 @@ namespace petrichor::city {
 struct Paint {
   Mat mat = Mat::plain;
   glm::vec3 colour{1.0f};
-  glm::vec2 uv{0.0f};        // palette cell of plain and glow; offset in metres of a tiling material
+  glm::vec2 uv{0.0f};  // palette cell of plain and glow; offset in metres of a tiling material
 };
 
 Paint plain(glm::vec3 colour, Finish finish);
@@ -29,8 +29,15 @@ struct UvRect {
 
 // Faces of a box, to leave out what nobody can see.
 enum Faces : unsigned {
-  face_left = 1, face_right = 2, face_bottom = 4, face_top = 8, face_back = 16, face_front = 32,
-  face_sides = face_left | face_right, face_all = 63, face_no_back = 63 & ~face_back,
+  face_left = 1,
+  face_right = 2,
+  face_bottom = 4,
+  face_top = 8,
+  face_back = 16,
+  face_front = 32,
+  face_sides = face_left | face_right,
+  face_all = 63,
+  face_no_back = 63 & ~face_back,
   face_no_bottom = 63 & ~face_bottom,
 };
 
@@ -53,8 +60,8 @@ class Builder {
   // dx per metre of z at that end, so that cornices meet round a corner.
   void moulding(const Paint&, std::span<const glm::vec2> profile, float x0, float x1, float miter0 = 0.0f,
                 float miter1 = 0.0f, bool caps = true);
-  void cylinder(const Paint&, glm::vec3 a, glm::vec3 b, float radius_a, float radius_b, int sides,
-                bool cap_a = false, bool cap_b = false);
+  void cylinder(const Paint&, glm::vec3 a, glm::vec3 b, float radius_a, float radius_b, int sides, bool cap_a = false,
+                bool cap_b = false);
   void tube(const Paint&, std::span<const glm::vec3> path, float radius_m, int sides, bool closed = false);
   // Profile points are (radius, y) from the top down; turned round the local y axis.
   void lathe(const Paint&, std::span<const glm::vec2> profile, int sides);

@@ -17,10 +17,22 @@ constexpr float house_depth_m = 11.0f;
 constexpr float corner_facade_m = 10.0f;
 
 Style make_style(Dice& dice) {
-  static const std::array<glm::vec3, 9> stucco{{{0.86f, 0.72f, 0.46f}, {0.78f, 0.52f, 0.40f}, {0.72f, 0.74f, 0.66f}, {0.88f, 0.82f, 0.68f}, {0.60f, 0.66f, 0.70f},
-                                               {0.80f, 0.62f, 0.52f}, {0.66f, 0.70f, 0.52f}, {0.90f, 0.78f, 0.56f}, {0.70f, 0.42f, 0.32f}}};
-  static const std::array<glm::vec3, 5> joinery{{{0.55f, 0.53f, 0.48f}, {0.05f, 0.10f, 0.08f}, {0.16f, 0.08f, 0.04f}, {0.45f, 0.42f, 0.36f}, {0.10f, 0.13f, 0.16f}}};
-  static const std::array<glm::vec3, 4> leaves{{{0.03f, 0.09f, 0.07f}, {0.10f, 0.05f, 0.03f}, {0.06f, 0.09f, 0.14f}, {0.14f, 0.13f, 0.10f}}};
+  static const std::array<glm::vec3, 9> stucco{{{0.86f, 0.72f, 0.46f},
+                                                {0.78f, 0.52f, 0.40f},
+                                                {0.72f, 0.74f, 0.66f},
+                                                {0.88f, 0.82f, 0.68f},
+                                                {0.60f, 0.66f, 0.70f},
+                                                {0.80f, 0.62f, 0.52f},
+                                                {0.66f, 0.70f, 0.52f},
+                                                {0.90f, 0.78f, 0.56f},
+                                                {0.70f, 0.42f, 0.32f}}};
+  static const std::array<glm::vec3, 5> joinery{{{0.55f, 0.53f, 0.48f},
+                                                 {0.05f, 0.10f, 0.08f},
+                                                 {0.16f, 0.08f, 0.04f},
+                                                 {0.45f, 0.42f, 0.36f},
+                                                 {0.10f, 0.13f, 0.16f}}};
+  static const std::array<glm::vec3, 4> leaves{
+      {{0.03f, 0.09f, 0.07f}, {0.10f, 0.05f, 0.03f}, {0.06f, 0.09f, 0.14f}, {0.14f, 0.13f, 0.10f}}};
   Style s;
   const int kind = dice.below(5);
   const glm::vec2 shift(dice.between(0.0f, 3.0f), dice.between(0.0f, 3.0f));
@@ -55,7 +67,8 @@ Style make_style(Dice& dice) {
     default: {  // stucco in the town's colours
       const glm::vec3 tint = stucco[static_cast<std::size_t>(dice.below(9))] * dice.between(0.75f, 1.0f);
       s.wall = tiling(Mat::stucco, tint, shift);
-      s.ground_wall = dice.chance(0.5f) ? tiling(Mat::ashlar, glm::vec3(0.8f), shift) : tiling(Mat::stucco, tint * 0.7f, shift);
+      s.ground_wall =
+          dice.chance(0.5f) ? tiling(Mat::ashlar, glm::vec3(0.8f), shift) : tiling(Mat::stucco, tint * 0.7f, shift);
       s.head = kind == 2 ? Head::hood : kind == 3 ? Head::lintel : Head::pediment;
       s.has_shutters = kind == 3;
       s.quoins = dice.chance(0.4f);
@@ -69,16 +82,20 @@ Style make_style(Dice& dice) {
 }
 
 void side_walls(Builder& b, const Style& style, float w, float depth, float back_from, float eaves) {
-  const Paint blind = tiling(Mat::stucco, style.wall.mat == Mat::stucco ? style.wall.colour * 0.6f : glm::vec3(0.4f, 0.36f, 0.32f));
+  const Paint blind =
+      tiling(Mat::stucco, style.wall.mat == Mat::stucco ? style.wall.colour * 0.6f : glm::vec3(0.4f, 0.36f, 0.32f));
   b.quad(blind, {0, 0, -depth}, {0, 0, 0}, {0, eaves, 0}, {0, eaves, -depth});
   b.quad(blind, {w, 0, 0}, {w, 0, -depth}, {w, eaves, -depth}, {w, eaves, 0});
   b.quad(blind, {w, back_from, -depth}, {0, back_from, -depth}, {0, eaves, -depth}, {w, eaves, -depth});
 }
 
-glm::vec3 roof_tint(Dice& dice) { return glm::vec3(1.0f, dice.between(0.85f, 1.0f), dice.between(0.8f, 1.0f)) * dice.between(0.7f, 1.0f); }
+glm::vec3 roof_tint(Dice& dice) {
+  return glm::vec3(1.0f, dice.between(0.85f, 1.0f), dice.between(0.8f, 1.0f)) * dice.between(0.7f, 1.0f);
+}
 
 // A house between party walls; marks its gutter and awning as drip sources.
-void add_house(Scene& scene, const std::string& name, const glm::mat4& frame, const Style& style, const Facade& f, float depth, std::uint32_t seed) {
+void add_house(Scene& scene, const std::string& name, const glm::mat4& frame, const Style& style, const Facade& f,
+               float depth, std::uint32_t seed) {
   Dice dice{seed};
   Mesh mesh;
   mesh.name = name;
@@ -89,10 +106,18 @@ void add_house(Scene& scene, const std::string& name, const glm::mat4& frame, co
   const RoofSpan span{f.width_m, depth, eaves};
   const glm::vec3 tint = roof_tint(dice);
   switch (style.roof) {
-    case Roof::saddle: saddle_roof(b, style, span, tint, dice); break;
-    case Roof::mansard: mansard_roof(b, style, span, tint, dice); break;
-    case Roof::flat: flat_roof(b, style, span, dice); break;
-    case Roof::gable: stepped_gable(b, style, span, tint, dice); break;
+    case Roof::saddle:
+      saddle_roof(b, style, span, tint, dice);
+      break;
+    case Roof::mansard:
+      mansard_roof(b, style, span, tint, dice);
+      break;
+    case Roof::flat:
+      flat_roof(b, style, span, dice);
+      break;
+    case Roof::gable:
+      stepped_gable(b, style, span, tint, dice);
+      break;
   }
   const int parent = scene.group("buildings");
   const int node = add_node(scene, name, parent, scene.add_mesh(std::move(mesh)), frame);
@@ -106,7 +131,8 @@ void add_house(Scene& scene, const std::string& name, const glm::mat4& frame, co
     add_light(scene, name + "_window", parent, glm::vec3(frame * glm::vec4(0.5f * f.width_m, 2.1f, 1.0f, 1.0f)),
               {{1.0f, 0.72f, 0.42f}, 34.0f, 9.0f, 0, 0, false, 0.6f});
   }
-  if (f.awning) mark_drip(scene, node, glm::translate(glm::mat4(1.0f), {0.35f, 2.0f, 1.5f}), f.width_m - 0.7f, 1.5f, 1.5f);
+  if (f.awning)
+    mark_drip(scene, node, glm::translate(glm::mat4(1.0f), {0.35f, 2.0f, 1.5f}), f.width_m - 0.7f, 1.5f, 1.5f);
 }
 
 struct Frontage {
@@ -127,7 +153,8 @@ void add_row(Scene& scene, const std::string& name, const Frontage& line, std::u
   const float length = glm::length(line.to - line.from);
   const int houses = static_cast<int>(std::lround(length / 10.2f));
   std::vector<float> cuts{0.0f};
-  for (int k = 1; k < houses; ++k) cuts.push_back(length * (static_cast<float>(k) + dice.between(-0.16f, 0.16f)) / static_cast<float>(houses));
+  for (int k = 1; k < houses; ++k)
+    cuts.push_back(length * (static_cast<float>(k) + dice.between(-0.16f, 0.16f)) / static_cast<float>(houses));
   cuts.push_back(length);
   for (int k = 0; k < houses; ++k) {
     const float a = cuts[static_cast<std::size_t>(k)];
@@ -138,22 +165,33 @@ void add_row(Scene& scene, const std::string& name, const Frontage& line, std::u
     f.width_m = c - a;
     f.ground = dice.chance(k < 2 ? 0.75f : 0.4f) ? Ground::shop : dice.chance(0.2f) ? Ground::gate : Ground::house;
     f.goods = dice.below(4);
-    static const std::array<std::array<Sign, 3>, 4> names{{{Sign::books, Sign::antiques, Sign::clocks}, {Sign::cafe, Sign::wines, Sign::cafe},
-                                                           {Sign::bakery, Sign::florist, Sign::bakery}, {Sign::tailor, Sign::barber, Sign::tailor}}};
+    static const std::array<std::array<Sign, 3>, 4> names{{{Sign::books, Sign::antiques, Sign::clocks},
+                                                           {Sign::cafe, Sign::wines, Sign::cafe},
+                                                           {Sign::bakery, Sign::florist, Sign::bakery},
+                                                           {Sign::tailor, Sign::barber, Sign::tailor}}};
     f.sign = static_cast<int>(names[static_cast<std::size_t>(f.goods)][static_cast<std::size_t>(dice.below(3))]);
     f.awning = dice.chance(0.45f);
-    static const std::array<glm::vec3, 6> accents{{{0.015f, 0.05f, 0.035f}, {0.09f, 0.012f, 0.012f}, {0.015f, 0.03f, 0.07f}, {0.03f, 0.02f, 0.015f}, {0.10f, 0.06f, 0.02f}, {0.03f, 0.035f, 0.035f}}};
+    static const std::array<glm::vec3, 6> accents{{{0.015f, 0.05f, 0.035f},
+                                                   {0.09f, 0.012f, 0.012f},
+                                                   {0.015f, 0.03f, 0.07f},
+                                                   {0.03f, 0.02f, 0.015f},
+                                                   {0.10f, 0.06f, 0.02f},
+                                                   {0.03f, 0.035f, 0.035f}}};
     f.accent = accents[static_cast<std::size_t>(dice.below(6))];
-    add_house(scene, name + "_" + std::to_string(k), plot_frame(line, a, c), style, f, house_depth_m, mix(seed, static_cast<std::uint32_t>(k)));
+    add_house(scene, name + "_" + std::to_string(k), plot_frame(line, a, c), style, f, house_depth_m,
+              mix(seed, static_cast<std::uint32_t>(k)));
   }
 }
 
 // One slope of a mansard over a corner house, with its dormers and gutter.
-void mansard_side(Builder& world, Builder& wall, glm::vec3 low0, glm::vec3 low1, glm::vec3 high0, glm::vec3 high1, bool flip, float width, int dormers,
-                  float rise, float inset, float eaves, const Style& style, Dice& dice) {
+void mansard_side(Builder& world, Builder& wall, glm::vec3 low0, glm::vec3 low1, glm::vec3 high0, glm::vec3 high1,
+                  bool flip, float width, int dormers, float rise, float inset, float eaves, const Style& style,
+                  Dice& dice) {
   const Paint tiles = tiling(Mat::tiles, glm::vec3(0.6f));
-  if (flip) world.quad(tiles, low1, low0, high0, high1);
-  else world.quad(tiles, low0, low1, high1, high0);
+  if (flip)
+    world.quad(tiles, low1, low0, high0, high1);
+  else
+    world.quad(tiles, low0, low1, high1, high0);
   const float slope = rise / (inset + 0.2f);
   for (int d = 0; d < dormers; ++d) {
     const float x = width * (static_cast<float>(d) + 0.5f) / static_cast<float>(dormers);
@@ -163,12 +201,18 @@ void mansard_side(Builder& world, Builder& wall, glm::vec3 low0, glm::vec3 low1,
 }
 
 // A breast wall along one side of a roof terrace, mitred where it meets the next.
-void parapet(Builder& b, const Style& style, float width, float y, bool mitred_first, bool mitred_last, float miter, bool starts_at_line) {
+void parapet(Builder& b, const Style& style, float width, float y, bool mitred_first, bool mitred_last, float miter,
+             bool starts_at_line) {
   const Paint stone = plain(style.trim * 0.85f, Finish::wet_stone);
   const float m0 = (starts_at_line ? mitred_first : mitred_last) ? miter : 0.0f;
   const float m1 = (starts_at_line ? mitred_last : mitred_first) ? miter : 0.0f;
   const float h = 0.95f;
-  const std::array<glm::vec2, 6> wall{{{0.0f, y}, {0.0f, y + h}, {0.08f, y + h + 0.02f}, {0.08f, y + h + 0.11f}, {-0.36f, y + h + 0.14f}, {-0.36f, y + h}}};
+  const std::array<glm::vec2, 6> wall{{{0.0f, y},
+                                       {0.0f, y + h},
+                                       {0.08f, y + h + 0.02f},
+                                       {0.08f, y + h + 0.11f},
+                                       {-0.36f, y + h + 0.14f},
+                                       {-0.36f, y + h}}};
   b.moulding(stone, wall, 0.0f, width, m0, m1, false);
   const std::array<glm::vec2, 3> inside{{{-0.36f, y + h}, {-0.30f, y + h}, {-0.30f, y}}};
   b.moulding(stone, inside, 0.0f, width, m0, m1, false);
@@ -182,28 +226,38 @@ void terrace(Scene& scene, Builder b, glm::vec3 where, float turn) {
   for (int side : {0, 1, 2, 3}) {
     Builder face = hut.moved({0, 0, 0}, 1.5707963f * static_cast<float>(side));
     const float z = (side & 1) ? 1.4f : 1.3f;
-    if (side == 0 || side == 3) face.box(plain({0.05f, 0.09f, 0.08f}, Finish::gloss), {-0.5f, 0, z}, {0.5f, 2.1f, z + 0.05f}, face_no_back);
+    if (side == 0 || side == 3)
+      face.box(plain({0.05f, 0.09f, 0.08f}, Finish::gloss), {-0.5f, 0, z}, {0.5f, 2.1f, z + 0.05f}, face_no_back);
   }
   hut.box(glow(Glow::candle), {-1.15f, 2.12f, 1.31f}, {-1.0f, 2.30f, 1.43f});
-  add_light(scene, "roof_terrace_lamp", scene.group("buildings"), where + glm::vec3(glm::rotate(glm::mat4(1.0f), turn, glm::vec3(0, 1, 0)) * glm::vec4(-1.08f, 2.1f, 1.75f, 0.0f)),
-            {{1.0f, 0.66f, 0.32f}, 60.0f, 14.0f, 0, 0, false, 0.1f});
+  add_light(
+      scene, "roof_terrace_lamp", scene.group("buildings"),
+      where + glm::vec3(glm::rotate(glm::mat4(1.0f), turn, glm::vec3(0, 1, 0)) * glm::vec4(-1.08f, 2.1f, 1.75f, 0.0f)),
+      {{1.0f, 0.66f, 0.32f}, 60.0f, 14.0f, 0, 0, false, 0.1f});
   for (glm::vec2 p : {glm::vec2(-3.4f, -2.0f), glm::vec2(-2.6f, -3.2f), glm::vec2(3.0f, -1.2f)}) {
     b.cylinder(plain(glm::vec3(0.15f, 0.16f, 0.17f), Finish::iron), {p.x, 0, p.y}, {p.x, 0.7f, p.y}, 0.11f, 0.11f, 8);
-    b.cylinder(plain(glm::vec3(0.15f, 0.16f, 0.17f), Finish::iron), {p.x, 0.74f, p.y}, {p.x, 0.9f, p.y}, 0.2f, 0.02f, 8, true);
+    b.cylinder(plain(glm::vec3(0.15f, 0.16f, 0.17f), Finish::iron), {p.x, 0.74f, p.y}, {p.x, 0.9f, p.y}, 0.2f, 0.02f, 8,
+               true);
   }
 }
 
 // A corner house: three facades round a cut corner, a mansard that follows them.
-void add_corner(Scene& scene, const std::string& name, int sx, int sz, Style style, const std::array<Facade, 3>& grounds, std::uint32_t seed) {
+void add_corner(Scene& scene, const std::string& name, int sx, int sz, Style style,
+                const std::array<Facade, 3>& grounds, std::uint32_t seed) {
   Dice dice{seed};
   Mesh mesh;
   mesh.name = name;
   Builder world(mesh);
-  const auto at = [&](float x, float z) { return glm::vec3(x * static_cast<float>(sx), 0.0f, z * static_cast<float>(sz)); };
+  const auto at = [&](float x, float z) {
+    return glm::vec3(x * static_cast<float>(sx), 0.0f, z * static_cast<float>(sz));
+  };
   const float cz = lane_wall_m + corner_cut_m;
   const float cx = main_wall_m + corner_cut_m;
-  const std::array<glm::vec3, 4> line{{at(main_wall_m, cz + corner_facade_m), at(main_wall_m, cz), at(cx, lane_wall_m), at(cx + corner_facade_m, lane_wall_m)}};
-  const std::array<glm::vec3, 3> outs{{{-static_cast<float>(sx), 0, 0}, glm::normalize(glm::vec3(-static_cast<float>(sx), 0, -static_cast<float>(sz))), {0, 0, -static_cast<float>(sz)}}};
+  const std::array<glm::vec3, 4> line{{at(main_wall_m, cz + corner_facade_m), at(main_wall_m, cz), at(cx, lane_wall_m),
+                                       at(cx + corner_facade_m, lane_wall_m)}};
+  const std::array<glm::vec3, 3> outs{{{-static_cast<float>(sx), 0, 0},
+                                       glm::normalize(glm::vec3(-static_cast<float>(sx), 0, -static_cast<float>(sz))),
+                                       {0, 0, -static_cast<float>(sz)}}};
   const float miter = std::tan(0.39269908f);
   const float eaves = eaves_height_m(style);
   const int parent = scene.group("buildings");
@@ -227,7 +281,8 @@ void add_corner(Scene& scene, const std::string& name, int sx, int sz, Style sty
   const float inset = style.roof == Roof::flat ? -0.02f : 1.2f;
   const auto plan = [&](float d, float y) {  // the outline moved inwards by d
     const float k = d * miter;
-    std::vector<glm::vec3> p{at(main_wall_m + d, cz + corner_facade_m), at(main_wall_m + d, cz + k), at(cx + k, lane_wall_m + d), at(cx + corner_facade_m, lane_wall_m + d)};
+    std::vector<glm::vec3> p{at(main_wall_m + d, cz + corner_facade_m), at(main_wall_m + d, cz + k),
+                             at(cx + k, lane_wall_m + d), at(cx + corner_facade_m, lane_wall_m + d)};
     for (glm::vec3& v : p) v.y = y;
     return p;
   };
@@ -241,21 +296,26 @@ void add_corner(Scene& scene, const std::string& name, int sx, int sz, Style sty
       parapet(b, style, w, eaves, k > 0, k < 2, miter, glm::length(glm::vec3(frames[k][3]) - line[k]) < 0.01f);
       continue;
     }
-    mansard_side(world, b, low[k], low[k + 1], high[k], high[k + 1], flip, w, k == 1 ? 1 : 3, rise, inset, eaves, style, dice);
+    mansard_side(world, b, low[k], low[k + 1], high[k], high[k + 1], flip, w, k == 1 ? 1 : 3, rise, inset, eaves, style,
+                 dice);
   }
   std::vector<glm::vec3> cap{high[0], high[1], high[2], high[3], at(cx + corner_facade_m, cz + corner_facade_m)};
   cap[4].y = eaves + rise;
   if (flip) std::reverse(cap.begin(), cap.end());
   world.fan(plain(glm::vec3(0.07f), Finish::wet_stone), cap);
-  if (style.roof == Roof::flat) terrace(scene, world.moved(at(cx + 5.5f, cz + 5.5f) + glm::vec3(0, eaves, 0)), at(cx + 5.5f, cz + 5.5f) + glm::vec3(0, eaves, 0), flip ? 1.5707963f : 0.0f);
+  if (style.roof == Roof::flat)
+    terrace(scene, world.moved(at(cx + 5.5f, cz + 5.5f) + glm::vec3(0, eaves, 0)),
+            at(cx + 5.5f, cz + 5.5f) + glm::vec3(0, eaves, 0), flip ? 1.5707963f : 0.0f);
   // Party walls towards the neighbours, up to the top of the mansard.
   const Paint blind = tiling(Mat::stucco, glm::vec3(0.4f, 0.36f, 0.32f));
   const auto up = [](glm::vec3 p, float y) { return glm::vec3(p.x, y, p.z); };
   const glm::vec3 a = line[0], c = line[3], e = at(cx + corner_facade_m, cz + corner_facade_m);
   const auto wall = [&](glm::vec3 p, glm::vec3 q) {
     const float t = eaves + rise;
-    if (flip) world.quad(blind, up(p, 0), up(q, 0), up(q, t), up(p, t));
-    else world.quad(blind, up(q, 0), up(p, 0), up(p, t), up(q, t));
+    if (flip)
+      world.quad(blind, up(p, 0), up(q, 0), up(q, t), up(p, t));
+    else
+      world.quad(blind, up(q, 0), up(p, 0), up(p, t), up(q, t));
   };
   wall(a, e);
   wall(e, c);
@@ -264,11 +324,13 @@ void add_corner(Scene& scene, const std::string& name, int sx, int sz, Style sty
   const int node = add_node(scene, name, parent, scene.add_mesh(std::move(mesh)));
   for (std::size_t k = 0; k < 3; k += 2) {
     if (grounds[k].ground != Ground::shop) continue;
-    add_light(scene, name + "_window_" + std::to_string(k), parent, glm::vec3(frames[k] * glm::vec4(0.5f * corner_facade_m, 2.1f, 1.0f, 1.0f)),
+    add_light(scene, name + "_window_" + std::to_string(k), parent,
+              glm::vec3(frames[k] * glm::vec4(0.5f * corner_facade_m, 2.1f, 1.0f, 1.0f)),
               {{1.0f, 0.72f, 0.42f}, 40.0f, 10.0f, 0, 0, false, 0.6f});
   }
   for (std::size_t k = 0; k < 3; ++k) {
-    mark_drip(scene, node, frames[k] * glm::translate(glm::mat4(1.0f), {0.0f, eaves - 0.1f, 0.53f}), glm::length(line[k + 1] - line[k]), 2.0f, 2.0f);
+    mark_drip(scene, node, frames[k] * glm::translate(glm::mat4(1.0f), {0.0f, eaves - 0.1f, 0.53f}),
+              glm::length(line[k + 1] - line[k]), 2.0f, 2.0f);
   }
 }
 
@@ -306,8 +368,11 @@ void add_buildings(Scene& scene) {
       const float lane_from = main_wall_m + corner_cut_m + corner_facade_m;
       const std::string quarter = std::string(sz < 0 ? "n" : "s") + (sx < 0 ? "w" : "e");
       const auto seed = static_cast<std::uint32_t>(100 + 10 * sx + sz);
-      add_row(scene, "lamplighter_" + quarter, {{fx * main_wall_m, 0, fz * main_from}, {fx * main_wall_m, 0, fz * street_end_m}, {-fx, 0, 0}}, seed);
-      add_row(scene, "weathercock_" + quarter, {{fx * lane_from, 0, fz * lane_wall_m}, {fx * street_end_m, 0, fz * lane_wall_m}, {0, 0, -fz}}, seed + 1000);
+      add_row(scene, "lamplighter_" + quarter,
+              {{fx * main_wall_m, 0, fz * main_from}, {fx * main_wall_m, 0, fz * street_end_m}, {-fx, 0, 0}}, seed);
+      add_row(scene, "weathercock_" + quarter,
+              {{fx * lane_from, 0, fz * lane_wall_m}, {fx * street_end_m, 0, fz * lane_wall_m}, {0, 0, -fz}},
+              seed + 1000);
     }
   }
   Facade shop;
@@ -328,14 +393,18 @@ void add_buildings(Scene& scene) {
   Facade house;
   Facade none;
   none.ground = Ground::none;
-  add_corner(scene, "corner_cafe", -1, -1, corner_style(Mat::stucco, {0.82f, 0.68f, 0.45f}, Head::pediment, 4), {shop, small, shop}, 301);
-  add_corner(scene, "corner_toy_shop", 1, -1, corner_style(Mat::brick, glm::vec3(0.95f), Head::lintel, 4), {none, none, none}, 302);
+  add_corner(scene, "corner_cafe", -1, -1, corner_style(Mat::stucco, {0.82f, 0.68f, 0.45f}, Head::pediment, 4),
+             {shop, small, shop}, 301);
+  add_corner(scene, "corner_toy_shop", 1, -1, corner_style(Mat::brick, glm::vec3(0.95f), Head::lintel, 4),
+             {none, none, none}, 302);
   Facade books_cut = books;
   books_cut.sign = -1;
-  add_corner(scene, "corner_books", -1, 1, roof_to_stand_on(corner_style(Mat::ashlar, glm::vec3(0.9f), Head::hood, 3)), {books, books_cut, house}, 303);
+  add_corner(scene, "corner_books", -1, 1, roof_to_stand_on(corner_style(Mat::ashlar, glm::vec3(0.9f), Head::hood, 3)),
+             {books, books_cut, house}, 303);
   Facade pharmacy_cut = pharmacy;
   pharmacy_cut.sign = -1;
-  add_corner(scene, "corner_pharmacy", 1, 1, corner_style(Mat::stucco, {0.66f, 0.42f, 0.34f}, Head::hood, 4), {pharmacy, pharmacy_cut, house}, 304);
+  add_corner(scene, "corner_pharmacy", 1, 1, corner_style(Mat::stucco, {0.66f, 0.42f, 0.34f}, Head::hood, 4),
+             {pharmacy, pharmacy_cut, house}, 304);
 
   // The ends of the streets.
   Style end = corner_style(Mat::ashlar, glm::vec3(0.85f), Head::pediment, 3);
@@ -346,18 +415,22 @@ void add_buildings(Scene& scene) {
   end.ground_height_m = gate_ground_m;
   Facade arch = gate;
   arch.ground = Ground::none;
-  add_house(scene, "north_gate", wall_frame({-main_wall_m, 0, -street_end_m}, {0, 0, 1}), end, arch, house_depth_m, 401);
+  add_house(scene, "north_gate", wall_frame({-main_wall_m, 0, -street_end_m}, {0, 0, 1}), end, arch, house_depth_m,
+            401);
   Style hotel = corner_style(Mat::brick, glm::vec3(0.9f), Head::hood, 5);
   hotel.roof = Roof::mansard;
   hotel.lit = 0.45f;
-  add_house(scene, "south_hotel", wall_frame({main_wall_m, 0, street_end_m}, {0, 0, -1}), hotel, gate, house_depth_m, 402);
+  add_house(scene, "south_hotel", wall_frame({main_wall_m, 0, street_end_m}, {0, 0, -1}), hotel, gate, house_depth_m,
+            402);
   gate.width_m = 2.0f * lane_wall_m;
   Style west = corner_style(Mat::stucco, {0.7f, 0.74f, 0.66f}, Head::lintel, 3);
   west.roof = Roof::flat;
-  add_house(scene, "west_house", wall_frame({-street_end_m, 0, lane_wall_m}, {1, 0, 0}), west, gate, house_depth_m, 403);
+  add_house(scene, "west_house", wall_frame({-street_end_m, 0, lane_wall_m}, {1, 0, 0}), west, gate, house_depth_m,
+            403);
   Style east = corner_style(Mat::brick, glm::vec3(0.85f), Head::arch, 2);
   east.roof = Roof::gable;
-  add_house(scene, "east_house", wall_frame({street_end_m, 0, -lane_wall_m}, {-1, 0, 0}), east, gate, house_depth_m, 404);
+  add_house(scene, "east_house", wall_frame({street_end_m, 0, -lane_wall_m}, {-1, 0, 0}), east, gate, house_depth_m,
+            404);
 }
 
 }  // namespace petrichor::city

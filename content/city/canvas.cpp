@@ -19,7 +19,9 @@ glm::vec2 lattice_gradient(int x, int y, glm::ivec2 period, std::uint32_t seed) 
   return {std::cos(t), std::sin(t)};
 }
 
-float fade(float t) { return t * t * t * (t * (t * 6.0f - 15.0f) + 10.0f); }
+float fade(float t) {
+  return t * t * t * (t * (t * 6.0f - 15.0f) + 10.0f);
+}
 
 // Gradients of one period, tabulated: the textures evaluate tens of millions of lattice points.
 struct Lattice {
@@ -78,7 +80,9 @@ float to_srgb(float linear) {
   return linear <= 0.0031308f ? 12.92f * linear : 1.055f * std::pow(linear, 1.0f / 2.4f) - 0.055f;
 }
 
-std::uint8_t to_byte(float value) { return static_cast<std::uint8_t>(std::clamp(value, 0.0f, 1.0f) * 255.0f + 0.5f); }
+std::uint8_t to_byte(float value) {
+  return static_cast<std::uint8_t>(std::clamp(value, 0.0f, 1.0f) * 255.0f + 0.5f);
+}
 
 Maps paint_maps(int width, int height, glm::vec2 metres, const std::function<Texel(float, float)>& texel) {
   Maps maps{Picture(width, height), Picture(width, height), Picture(width, height)};

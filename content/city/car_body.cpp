@@ -16,7 +16,9 @@ float smooth(float low, float high, float x) {
   const float t = std::clamp((x - low) / (high - low), 0.0f, 1.0f);
   return t * t * (3.0f - 2.0f * t);
 }
-float power(float v, float e) { return std::copysign(std::pow(std::abs(v), e), v); }
+float power(float v, float e) {
+  return std::copysign(std::pow(std::abs(v), e), v);
+}
 
 struct Body {
   CarShape s;
@@ -38,7 +40,8 @@ struct Body {
   }
   // u from the left sill over the bonnet to the right sill, v from tail to nose.
   glm::vec3 shell(float u, float v) const {
-    const float z = half() * (v < 0.5f ? -1.0f : 1.0f) * (1.0f - std::pow(1.0f - std::abs(2.0f * v - 1.0f), 1.0f)) * 0.999f;
+    const float z =
+        half() * (v < 0.5f ? -1.0f : 1.0f) * (1.0f - std::pow(1.0f - std::abs(2.0f * v - 1.0f), 1.0f)) * 0.999f;
     const float zz = half() * 0.999f * std::sin((v - 0.5f) * pi * 0.98f) / std::sin(0.49f * pi);
     const float along = 0.35f * zz + 0.65f * z;  // stations crowd towards the rounded ends
     const float a = pi * u;
@@ -48,7 +51,8 @@ struct Body {
   }
   float roof_at(float z) const {
     const float l = s.length_m;
-    const float rise = smooth(s.screen_foot * l + 0.02f, s.roof_front * l - 0.12f, z) * smooth(s.rear_foot * l - 0.02f, s.roof_back * l + 0.12f, z);
+    const float rise = smooth(s.screen_foot * l + 0.02f, s.roof_front * l - 0.12f, z) *
+                       smooth(s.rear_foot * l - 0.02f, s.roof_back * l + 0.12f, z);
     const float crown = 1.0f - 0.03f * power((z - 0.5f * (s.roof_front + s.roof_back) * l) / l, 2.0f);
     return belt_at(z) - 0.05f + (s.height_m * crown - belt_at(z) + 0.05f) * std::pow(rise, 0.8f);
   }
@@ -111,7 +115,8 @@ Mesh car_mesh(const std::string& name, const CarShape& shape, glm::vec3 colour, 
   b.surface(paint, 10, 11, [&](float u, float v) { return body.cabin(1.0f - u, v); });
   // Windows: patches of the cabin lifted a little.
   const auto pane = [&](float u0, float u1, float v0, float v1, int nu, int nv) {
-    b.surface(glass, nu, nv, [&](float u, float v) { return body.cabin(u1 + (u0 - u1) * u, v0 + (v1 - v0) * v, 0.012f); });
+    b.surface(glass, nu, nv,
+              [&](float u, float v) { return body.cabin(u1 + (u0 - u1) * u, v0 + (v1 - v0) * v, 0.012f); });
   };
   const float span = shape.screen_foot - shape.rear_foot;
   const float roof_v0 = (shape.roof_back - shape.rear_foot) / span;
@@ -133,11 +138,15 @@ Mesh car_mesh(const std::string& name, const CarShape& shape, glm::vec3 colour, 
       wheel(b, x * (body.width_at(z) + 0.012f), z, x);
     }
     // Sill strip, door gap, handle, mirror.
-    b.box(chrome, {x * (shape.half_width_m + 0.004f) - 0.006f, 0.47f, -axle + 0.42f}, {x * (shape.half_width_m + 0.004f) + 0.006f, 0.49f, axle - 0.42f});
+    b.box(chrome, {x * (shape.half_width_m + 0.004f) - 0.006f, 0.47f, -axle + 0.42f},
+          {x * (shape.half_width_m + 0.004f) + 0.006f, 0.49f, axle - 0.42f});
     const float seam = x * (shape.half_width_m - 0.004f);
-    for (float z : {-0.42f, 0.52f}) b.box(black, {seam - 0.006f, 0.30f, z}, {seam + 0.006f, shape.bonnet_m - 0.2f, z + 0.012f});
-    b.box(chrome, {x * (shape.half_width_m + 0.012f) - 0.02f, 0.66f, -0.36f}, {x * (shape.half_width_m + 0.012f) + 0.02f, 0.685f, -0.22f});
-    b.box(paint, {x * 0.82f - 0.055f, shape.bonnet_m + 0.08f, 0.52f}, {x * 0.82f + 0.055f, shape.bonnet_m + 0.18f, 0.58f});
+    for (float z : {-0.42f, 0.52f})
+      b.box(black, {seam - 0.006f, 0.30f, z}, {seam + 0.006f, shape.bonnet_m - 0.2f, z + 0.012f});
+    b.box(chrome, {x * (shape.half_width_m + 0.012f) - 0.02f, 0.66f, -0.36f},
+          {x * (shape.half_width_m + 0.012f) + 0.02f, 0.685f, -0.22f});
+    b.box(paint, {x * 0.82f - 0.055f, shape.bonnet_m + 0.08f, 0.52f},
+          {x * 0.82f + 0.055f, shape.bonnet_m + 0.18f, 0.58f});
   }
   // Lamps, bumpers, grille, plates.
   const float front = body.half();
@@ -155,21 +164,32 @@ Mesh car_mesh(const std::string& name, const CarShape& shape, glm::vec3 colour, 
     std::vector<glm::vec3> bumper;
     for (int k = 0; k <= 6; ++k) {
       const float t = -1.0f + 2.0f * static_cast<float>(k) / 6.0f;
-      bumper.emplace_back(0.80f * shape.half_width_m / 0.77f * t, 0.39f, end * (front + 0.07f - 0.22f * std::pow(std::abs(t), 4.0f)));
+      bumper.emplace_back(0.80f * shape.half_width_m / 0.77f * t, 0.39f,
+                          end * (front + 0.07f - 0.22f * std::pow(std::abs(t), 4.0f)));
     }
     b.tube(chrome, bumper, 0.038f, 5);
     const float z = end * (front + 0.112f);
     const float half = 0.24f;
-    if (end > 0) b.picture(Mat::signs, glm::vec3(1.0f), sign_rect(Sign::number_plate), {-half, 0.33f, z}, {half, 0.33f, z}, {half, 0.45f, z}, {-half, 0.45f, z});
-    else b.picture(Mat::signs, glm::vec3(1.0f), sign_rect(Sign::number_plate), {half, 0.33f, z}, {-half, 0.33f, z}, {-half, 0.45f, z}, {half, 0.45f, z});
+    if (end > 0)
+      b.picture(Mat::signs, glm::vec3(1.0f), sign_rect(Sign::number_plate), {-half, 0.33f, z}, {half, 0.33f, z},
+                {half, 0.45f, z}, {-half, 0.45f, z});
+    else
+      b.picture(Mat::signs, glm::vec3(1.0f), sign_rect(Sign::number_plate), {half, 0.33f, z}, {-half, 0.33f, z},
+                {-half, 0.45f, z}, {half, 0.45f, z});
   }
-  for (int k = 0; k < 4; ++k) b.box(chrome, {-0.34f, 0.47f + 0.045f * static_cast<float>(k), front - 0.10f}, {0.34f, 0.485f + 0.045f * static_cast<float>(k), front + 0.012f});
-  b.box(black, {-shape.half_width_m + 0.08f, 0.16f, -front + 0.35f}, {shape.half_width_m - 0.08f, sill_m + 0.03f, front - 0.35f}, face_all & ~face_top);
+  for (int k = 0; k < 4; ++k)
+    b.box(chrome, {-0.34f, 0.47f + 0.045f * static_cast<float>(k), front - 0.10f},
+          {0.34f, 0.485f + 0.045f * static_cast<float>(k), front + 0.012f});
+  b.box(black, {-shape.half_width_m + 0.08f, 0.16f, -front + 0.35f},
+        {shape.half_width_m - 0.08f, sill_m + 0.03f, front - 0.35f}, face_all & ~face_top);
   if (sign == CarSign::taxi) {
     const float y = shape.height_m;
-    b.box(plain({0.5f, 0.3f, 0.04f}, Finish::gloss), {-0.24f, y - 0.02f, -0.28f}, {0.24f, y + 0.12f, -0.16f}, face_sides | face_top);
-    b.picture(Mat::signs, glm::vec3(1.0f), sign_rect(Sign::taxi), {-0.24f, y, -0.16f}, {0.24f, y, -0.16f}, {0.24f, y + 0.12f, -0.16f}, {-0.24f, y + 0.12f, -0.16f});
-    b.picture(Mat::signs, glm::vec3(1.0f), sign_rect(Sign::taxi), {0.24f, y, -0.28f}, {-0.24f, y, -0.28f}, {-0.24f, y + 0.12f, -0.28f}, {0.24f, y + 0.12f, -0.28f});
+    b.box(plain({0.5f, 0.3f, 0.04f}, Finish::gloss), {-0.24f, y - 0.02f, -0.28f}, {0.24f, y + 0.12f, -0.16f},
+          face_sides | face_top);
+    b.picture(Mat::signs, glm::vec3(1.0f), sign_rect(Sign::taxi), {-0.24f, y, -0.16f}, {0.24f, y, -0.16f},
+              {0.24f, y + 0.12f, -0.16f}, {-0.24f, y + 0.12f, -0.16f});
+    b.picture(Mat::signs, glm::vec3(1.0f), sign_rect(Sign::taxi), {0.24f, y, -0.28f}, {-0.24f, y, -0.28f},
+              {-0.24f, y + 0.12f, -0.28f}, {0.24f, y + 0.12f, -0.28f});
   }
   return mesh;
 }

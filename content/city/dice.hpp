@@ -14,11 +14,17 @@ constexpr std::uint32_t mix(std::uint32_t x) {
   return x ^ (x >> 16);
 }
 
-constexpr std::uint32_t mix(std::uint32_t a, std::uint32_t b) { return mix(a ^ mix(b + 0x9e3779b9u)); }
-constexpr std::uint32_t mix(std::uint32_t a, std::uint32_t b, std::uint32_t c) { return mix(mix(a, b), c); }
+constexpr std::uint32_t mix(std::uint32_t a, std::uint32_t b) {
+  return mix(a ^ mix(b + 0x9e3779b9u));
+}
+constexpr std::uint32_t mix(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+  return mix(mix(a, b), c);
+}
 
 // [0, 1), 24 bits, exact in float.
-constexpr float unit(std::uint32_t bits) { return static_cast<float>(bits >> 8) * (1.0f / 16777216.0f); }
+constexpr float unit(std::uint32_t bits) {
+  return static_cast<float>(bits >> 8) * (1.0f / 16777216.0f);
+}
 
 struct Dice {
   std::uint32_t seed = 1;

@@ -22,10 +22,17 @@ void quoins(Builder& b, const Paint& trim, float x, float inward, float y0, floa
 
 void cornice(Builder& b, const Style& style, const Facade& f, float y) {
   const Paint trim = plain(style.trim, Finish::wet_stone);
-  const std::array<glm::vec2, 8> profile{{{0.0f, y - 0.62f}, {0.06f, y - 0.60f}, {0.07f, y - 0.36f}, {0.20f, y - 0.30f},
-                                          {0.40f, y - 0.24f}, {0.42f, y - 0.12f}, {0.50f, y - 0.03f}, {0.50f, y}}};
+  const std::array<glm::vec2, 8> profile{{{0.0f, y - 0.62f},
+                                          {0.06f, y - 0.60f},
+                                          {0.07f, y - 0.36f},
+                                          {0.20f, y - 0.30f},
+                                          {0.40f, y - 0.24f},
+                                          {0.42f, y - 0.12f},
+                                          {0.50f, y - 0.03f},
+                                          {0.50f, y}}};
   b.moulding(trim, profile, 0.0f, f.width_m, f.miter_left, f.miter_right);
-  b.quad(trim, {-f.miter_left * 0.5f, y, 0.5f}, {f.width_m + f.miter_right * 0.5f, y, 0.5f}, {f.width_m, y, 0.0f}, {0.0f, y, 0.0f});
+  b.quad(trim, {-f.miter_left * 0.5f, y, 0.5f}, {f.width_m + f.miter_right * 0.5f, y, 0.5f}, {f.width_m, y, 0.0f},
+         {0.0f, y, 0.0f});
   if (!style.dentils) return;
   for (float x = 0.15f; x + 0.16f < f.width_m; x += 0.48f) {
     b.box(trim, {x, y - 0.36f, 0.06f}, {x + 0.16f, y - 0.22f, 0.26f}, face_front | face_sides | face_bottom);
@@ -33,16 +40,23 @@ void cornice(Builder& b, const Style& style, const Facade& f, float y) {
 }
 
 void string_course(Builder& b, const Style& style, const Facade& f, float y, float reach) {
-  const std::array<glm::vec2, 5> profile{{{0.0f, y - 0.12f}, {reach * 0.6f, y - 0.10f}, {reach, y - 0.03f}, {reach, y + 0.03f}, {0.0f, y + 0.07f}}};
+  const std::array<glm::vec2, 5> profile{
+      {{0.0f, y - 0.12f}, {reach * 0.6f, y - 0.10f}, {reach, y - 0.03f}, {reach, y + 0.03f}, {0.0f, y + 0.07f}}};
   b.moulding(plain(style.trim, Finish::wet_stone), profile, 0.0f, f.width_m, f.miter_left, f.miter_right);
 }
 
 void downpipe(Builder& b, float x, float y) {
   const Paint zinc = plain(glm::vec3(0.16f, 0.17f, 0.18f), Finish::iron);
-  const std::array<glm::vec3, 7> path{{{x, y - 0.05f, 0.58f}, {x, y - 0.25f, 0.55f}, {x, y - 0.75f, 0.16f}, {x, y - 0.95f, 0.11f},
-                                       {x, 0.75f, 0.11f}, {x, 0.40f, 0.13f}, {x, 0.28f, 0.28f}}};
+  const std::array<glm::vec3, 7> path{{{x, y - 0.05f, 0.58f},
+                                       {x, y - 0.25f, 0.55f},
+                                       {x, y - 0.75f, 0.16f},
+                                       {x, y - 0.95f, 0.11f},
+                                       {x, 0.75f, 0.11f},
+                                       {x, 0.40f, 0.13f},
+                                       {x, 0.28f, 0.28f}}};
   b.tube(zinc, path, 0.048f, 6);
-  for (float h = 1.6f; h < y - 1.2f; h += 2.6f) b.box(zinc, {x - 0.065f, h, 0.0f}, {x + 0.065f, h + 0.05f, 0.175f}, face_no_back);
+  for (float h = 1.6f; h < y - 1.2f; h += 2.6f)
+    b.box(zinc, {x - 0.065f, h, 0.0f}, {x + 0.065f, h + 0.05f, 0.175f}, face_no_back);
 }
 
 void upper_floors(Builder& b, const Style& style, const Facade& f, Dice& dice) {
@@ -63,8 +77,9 @@ void upper_floors(Builder& b, const Style& style, const Facade& f, Dice& dice) {
     for (int k = 0; k < bays; ++k) {
       const float x = (static_cast<float>(k) + 0.5f) * pitch;
       const Head head = top && style.head != Head::arch ? Head::lintel
-                        : style.head == Head::pediment ? (floor == 0 || (floor == 1 && (k & 1)) ? Head::pediment : Head::hood)
-                                                       : style.head;
+                        : style.head == Head::pediment
+                            ? (floor == 0 || (floor == 1 && (k & 1)) ? Head::pediment : Head::hood)
+                            : style.head;
       window(b, style, x, y + sill, style.window_width_m, h, head, style.has_shutters, dice);
       if ((floor == 0 || floor == 2) && !top && dice.chance(style.balconies)) {
         balcony(b, style, x, y + (floor == 0 ? 0.1f : 0.35f), std::min(pitch - 0.2f, style.window_width_m + 0.9f));
@@ -87,7 +102,8 @@ void house_ground(Builder& b, const Style& style, const Facade& f, Dice& dice) {
     if (k == door_bay) {
       openings.push_back({x - 0.5f * door_width, x + 0.5f * door_width, 0.1f, 0.1f + door_height});
     } else {
-      openings.push_back({x - 0.5f * style.window_width_m, x + 0.5f * style.window_width_m, 1.15f, 1.15f + style.window_height_m});
+      openings.push_back(
+          {x - 0.5f * style.window_width_m, x + 0.5f * style.window_width_m, 1.15f, 1.15f + style.window_height_m});
     }
   }
   wall_with_openings(b, style.ground_wall, f.width_m, 0.0f, top, openings);
@@ -96,23 +112,30 @@ void house_ground(Builder& b, const Style& style, const Facade& f, Dice& dice) {
   const float door_x = (static_cast<float>(door_bay) + 0.5f) * pitch;
   for (float end : {door_x - 0.5f * door_width - 0.15f, f.width_m}) {
     if (end > x + 0.05f) {
-      const std::array<glm::vec2, 4> profile{{{0.07f, 0.0f}, {0.07f, plinth_m - 0.06f}, {0.03f, plinth_m}, {0.0f, plinth_m}}};
+      const std::array<glm::vec2, 4> profile{
+          {{0.07f, 0.0f}, {0.07f, plinth_m - 0.06f}, {0.03f, plinth_m}, {0.0f, plinth_m}}};
       b.moulding(trim, profile, x, end, x == 0.0f ? f.miter_left : 0.0f, end == f.width_m ? f.miter_right : 0.0f);
     }
     x = door_x + 0.5f * door_width + 0.15f;
   }
   for (int k = 0; k < bays; ++k) {
     const float wx = (static_cast<float>(k) + 0.5f) * pitch;
-    if (k == door_bay) door(b, style, f.accent, wx, door_width, door_height, true);
-    else window(b, style, wx, 1.15f, style.window_width_m, style.window_height_m, style.head == Head::pediment ? Head::hood : style.head, false, dice);
+    if (k == door_bay)
+      door(b, style, f.accent, wx, door_width, door_height, true);
+    else
+      window(b, style, wx, 1.15f, style.window_width_m, style.window_height_m,
+             style.head == Head::pediment ? Head::hood : style.head, false, dice);
   }
 }
 
 }  // namespace
 
-float eaves_height_m(const Style& s) { return s.ground_height_m + s.floor_height_m * static_cast<float>(s.floors) + 0.5f; }
+float eaves_height_m(const Style& s) {
+  return s.ground_height_m + s.floor_height_m * static_cast<float>(s.floors) + 0.5f;
+}
 
-void wall_with_openings(Builder& b, const Paint& paint, float width, float y0, float y1, std::vector<Opening> openings) {
+void wall_with_openings(Builder& b, const Paint& paint, float width, float y0, float y1,
+                        std::vector<Opening> openings) {
   std::sort(openings.begin(), openings.end(), [](const Opening& a, const Opening& c) { return a.x0 < c.x0; });
   float x = 0.0f;
   for (const Opening& o : openings) {
@@ -146,7 +169,8 @@ void door(Builder& parent, const Style& style, glm::vec3 colour, float x, float 
       const float y0 = 0.15f + static_cast<float>(p) * (light - 0.25f) / 3.0f;
       b.box(leaf, {x0 + 0.14f, y0, -d}, {x1 - 0.14f, y0 + (light - 0.25f) / 3.0f - 0.12f, -d + 0.035f}, face_no_back);
     }
-    b.box(plain({0.75f, 0.5f, 0.2f}, Finish::brass), {x1 - 0.10f, 1.0f, -d}, {x1 - 0.06f, 1.14f, -d + 0.07f}, face_no_back);
+    b.box(plain({0.75f, 0.5f, 0.2f}, Finish::brass), {x1 - 0.10f, 1.0f, -d}, {x1 - 0.06f, 1.14f, -d + 0.07f},
+          face_no_back);
   }
   b.box(trim, {l - 0.15f, 0.0f, 0.0f}, {l, h + 0.15f, 0.07f}, face_front | face_sides | face_top);
   b.box(trim, {r, 0.0f, 0.0f}, {r + 0.15f, h + 0.15f, 0.07f}, face_front | face_sides | face_top);

@@ -13,30 +13,30 @@ enum class Roof : std::uint8_t { saddle, mansard, flat, gable };
 struct Style {
   Paint wall;
   Paint ground_wall;
-  glm::vec3 trim{0.45f};       // stone dressings, linear albedo
-  glm::vec3 joinery{0.5f};     // window frames
+  glm::vec3 trim{0.45f};    // stone dressings, linear albedo
+  glm::vec3 joinery{0.5f};  // window frames
   glm::vec3 shutters{0.05f, 0.1f, 0.07f};
   Head head = Head::lintel;
   Roof roof = Roof::saddle;
   float ground_height_m = 4.0f;
   float floor_height_m = 3.2f;
-  int floors = 4;              // above the ground floor
-  float bay_m = 2.5f;          // about
+  int floors = 4;      // above the ground floor
+  float bay_m = 2.5f;  // about
   float window_width_m = 1.15f;
   float window_height_m = 1.9f;
-  float lit = 0.30f;           // share of windows with somebody at home
+  float lit = 0.30f;  // share of windows with somebody at home
   bool has_shutters = false;
   bool string_courses = true;
   bool quoins = false;
   bool dentils = false;
-  float balconies = 0.0f;      // share of the bays of the first and third floor
+  float balconies = 0.0f;  // share of the bays of the first and third floor
 };
 
 struct Facade {
   float width_m = 10.0f;
   Ground ground = Ground::house;
-  int goods = 0;               // which shop window
-  int sign = -1;               // Sign of the fascia
+  int goods = 0;  // which shop window
+  int sign = -1;  // Sign of the fascia
   bool awning = false;
   glm::vec3 accent{0.03f, 0.06f, 0.05f};  // shop joinery and doors
   float miter_left = 0.0f, miter_right = 0.0f;

@@ -155,8 +155,10 @@ void add_pavement(Scene& scene, int sx, int sz, int parent) {
     };
     const bool flipped = sx * sz > 0;
     const auto face = [&](const Paint& paint, glm::vec3 a, glm::vec3 c, glm::vec3 d, glm::vec3 e) {
-      if (flipped) b.quad(paint, a, e, d, c);
-      else b.quad(paint, a, c, d, e);
+      if (flipped)
+        b.quad(paint, a, e, d, c);
+      else
+        b.quad(paint, a, c, d, e);
     };
     const Paint stone = plain(kerb_stone, Finish::wet_stone);
     const Paint slabs = tiling(Mat::slabs, glm::vec3(0.95f));
@@ -174,7 +176,8 @@ void add_pavement(Scene& scene, int sx, int sz, int parent) {
       const glm::vec2 tc = t.kerb + td * 0.03f;
       face(stone, point(sc, kerb_m), point(tc, kerb_m), point(ti, kerb_m), point(si, kerb_m));
       face(stone, point(s.kerb, kerb_m - 0.03f), point(t.kerb, kerb_m - 0.03f), point(tc, kerb_m), point(sc, kerb_m));
-      face(stone, point(s.kerb, -0.12f), point(t.kerb, -0.12f), point(t.kerb, kerb_m - 0.03f), point(s.kerb, kerb_m - 0.03f));
+      face(stone, point(s.kerb, -0.12f), point(t.kerb, -0.12f), point(t.kerb, kerb_m - 0.03f),
+           point(s.kerb, kerb_m - 0.03f));
     }
     add_mesh_node(scene, parent, std::move(mesh));
   }
@@ -182,14 +185,15 @@ void add_pavement(Scene& scene, int sx, int sz, int parent) {
 
 // A painted rectangle that follows the road's shape, 4 mm proud of it.
 void paint_on_road(Mesh& mesh, glm::vec2 low, glm::vec2 high, float cell_m, glm::vec3 tint) {
-  grid(mesh.primitives[Mat::markings], steps(low.x, high.x, cell_m), steps(low.y, high.y, cell_m), [&](float x, float z) {
-    Vertex v{};
-    v.position_m = {x, carriageway_height_m(x, z) + 0.006f, z};
-    v.normal = {0.0f, 1.0f, 0.0f};
-    v.uv = glm::vec2(x, z) * 0.37f;
-    v.colour = glm::min(tint, glm::vec3(1.0f));
-    return v;
-  });
+  grid(mesh.primitives[Mat::markings], steps(low.x, high.x, cell_m), steps(low.y, high.y, cell_m),
+       [&](float x, float z) {
+         Vertex v{};
+         v.position_m = {x, carriageway_height_m(x, z) + 0.006f, z};
+         v.normal = {0.0f, 1.0f, 0.0f};
+         v.uv = glm::vec2(x, z) * 0.37f;
+         v.colour = glm::min(tint, glm::vec3(1.0f));
+         return v;
+       });
 }
 
 void add_markings(Scene& scene, int parent) {
@@ -209,7 +213,8 @@ void add_markings(Scene& scene, int parent) {
       paint_on_road(mesh, {x - 1.3f, z - 0.27f}, {x + 1.3f, z + 0.27f}, 0.55f, white);
     }
     // Stop lines, on the side that drives up to the crossing (right-hand traffic).
-    paint_on_road(mesh, {s > 0 ? 0.15f : -4.8f, sf * 11.0f - 0.2f}, {s > 0 ? 4.8f : -0.15f, sf * 11.0f + 0.2f}, 0.6f, white);
+    paint_on_road(mesh, {s > 0 ? 0.15f : -4.8f, sf * 11.0f - 0.2f}, {s > 0 ? 4.8f : -0.15f, sf * 11.0f + 0.2f}, 0.6f,
+                  white);
     for (int k = 0; k < 10; ++k) {  // middle line
       const float z = sf * (14.0f + 4.6f * static_cast<float>(k));
       paint_on_road(mesh, {-0.07f, std::min(z, z + sf * 2.4f)}, {0.07f, std::max(z, z + sf * 2.4f)}, 0.8f, white);
@@ -236,14 +241,16 @@ void add_ironwork(Scene& scene, const StandingWater& water, int parent) {
     ring.emplace_back(0.33f * std::sin(t), 0.0f, 0.33f * std::cos(t));
   }
   b.fan(tiling(Mat::ironwork), ring);
-  for (Vertex& v : cover.primitives[Mat::ironwork].vertices) v.uv = glm::vec2(v.position_m.x, v.position_m.z) / 0.68f + 0.5f;
+  for (Vertex& v : cover.primitives[Mat::ironwork].vertices)
+    v.uv = glm::vec2(v.position_m.x, v.position_m.z) / 0.68f + 0.5f;
   const int cover_mesh = scene.add_mesh(std::move(cover));
   int number = 0;
-  for (glm::vec2 p : {glm::vec2(1.5f, 6.0f), glm::vec2(-1.5f, -14.0f), glm::vec2(1.6f, -27.0f), glm::vec2(-1.4f, 26.0f), glm::vec2(0.2f, 0.6f),
-                      glm::vec2(1.5f, 43.0f), glm::vec2(-1.5f, -45.0f), glm::vec2(15.0f, 0.1f), glm::vec2(-18.0f, 0.2f), glm::vec2(36.0f, 0.0f),
-                      glm::vec2(-40.0f, -0.2f)}) {
+  for (glm::vec2 p : {glm::vec2(1.5f, 6.0f), glm::vec2(-1.5f, -14.0f), glm::vec2(1.6f, -27.0f), glm::vec2(-1.4f, 26.0f),
+                      glm::vec2(0.2f, 0.6f), glm::vec2(1.5f, 43.0f), glm::vec2(-1.5f, -45.0f), glm::vec2(15.0f, 0.1f),
+                      glm::vec2(-18.0f, 0.2f), glm::vec2(36.0f, 0.0f), glm::vec2(-40.0f, -0.2f)}) {
     const float y = carriageway_height_m(p.x, p.y) + 0.007f;
-    add_node(scene, "manhole_" + std::to_string(number++), parent, cover_mesh, glm::translate(glm::mat4(1.0f), {p.x, y, p.y}));
+    add_node(scene, "manhole_" + std::to_string(number++), parent, cover_mesh,
+             glm::translate(glm::mat4(1.0f), {p.x, y, p.y}));
   }
   Mesh gully;
   gully.name = "gully";
@@ -261,14 +268,17 @@ void add_ironwork(Scene& scene, const StandingWater& water, int parent) {
   number = 0;
   for (const glm::vec2& p : water.gullies) {
     const float y = carriageway_height_m(p.x, p.y) + 0.004f;
-    add_node(scene, "gully_" + std::to_string(number++), parent, gully_mesh, glm::translate(glm::mat4(1.0f), {p.x, y, p.y}));
+    add_node(scene, "gully_" + std::to_string(number++), parent, gully_mesh,
+             glm::translate(glm::mat4(1.0f), {p.x, y, p.y}));
   }
 }
 
 // Level sheets at each basin's height: the ground itself cuts their shore. Runs of cells make one strip.
 void add_water(Scene& scene, const StandingWater& water, int parent) {
   const int n = water.size;
-  const auto at = [n](int i, int j) { return static_cast<std::size_t>(j) * static_cast<std::size_t>(n) + static_cast<std::size_t>(i); };
+  const auto at = [n](int i, int j) {
+    return static_cast<std::size_t>(j) * static_cast<std::size_t>(n) + static_cast<std::size_t>(i);
+  };
   // The level a cell shows: its own, or a wet neighbour's where the ground hides the sheet's rim.
   const auto sheet = [&](int i, int j) {
     const float ground = water.ground_m[at(i, j)];
@@ -279,7 +289,8 @@ void add_water(Scene& scene, const StandingWater& water, int parent) {
       for (int a = -1; a <= 1; ++a) {
         if (i + a < 0 || j + b < 0 || i + a >= n || j + b >= n) continue;
         const std::size_t k = at(i + a, j + b);
-        if (std::isfinite(water.ground_m[k]) && water.level_m[k] - water.ground_m[k] > 0.003f && water.level_m[k] < ground + 0.003f) {
+        if (std::isfinite(water.ground_m[k]) && water.level_m[k] - water.ground_m[k] > 0.003f &&
+            water.level_m[k] < ground + 0.003f) {
           level = std::max(level, water.level_m[k]);
         }
       }
@@ -302,7 +313,8 @@ void add_water(Scene& scene, const StandingWater& water, int parent) {
             const float x1 = -street_end_m + static_cast<float>(end) * water_cell_m;
             const float z0 = -street_end_m + static_cast<float>(j) * water_cell_m;
             const float z1 = z0 + water_cell_m;
-            b.quad({Mat::water, glm::vec3(1.0f), {}}, {x0, level, z1}, {x1, level, z1}, {x1, level, z0}, {x0, level, z0});
+            b.quad({Mat::water, glm::vec3(1.0f), {}}, {x0, level, z1}, {x1, level, z1}, {x1, level, z0},
+                   {x0, level, z0});
           }
           i = end;
         }
@@ -336,7 +348,8 @@ void add_ground(Scene& scene, const StandingWater& water, bool wet) {
     node.parent = puddles;
     node.translation_m = {centre.x, basin.level_m, centre.y};
     nlohmann::json extras;
-    extras["puddle"] = {{"size_m", {size.x, size.y}}, {"maximum_depth_mm", 1000.0f * basin.maximum_depth_m}, {"catchment_ratio", 3.0}};
+    extras["puddle"] = {
+        {"size_m", {size.x, size.y}}, {"maximum_depth_mm", 1000.0f * basin.maximum_depth_m}, {"catchment_ratio", 3.0}};
     node.extras_json = extras.dump();
     scene.add(std::move(node));
   }

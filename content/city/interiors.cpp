@@ -16,7 +16,9 @@ float smooth(float low, float high, float x) {
   const float t = std::clamp((x - low) / (high - low), 0.0f, 1.0f);
   return t * t * (3.0f - 2.0f * t);
 }
-glm::vec3 blend(glm::vec3 a, glm::vec3 b, float t) { return a + (b - a) * std::clamp(t, 0.0f, 1.0f); }
+glm::vec3 blend(glm::vec3 a, glm::vec3 b, float t) {
+  return a + (b - a) * std::clamp(t, 0.0f, 1.0f);
+}
 float inside_disc(glm::vec2 p, glm::vec2 centre, glm::vec2 radius, float soft = 0.05f) {
   const glm::vec2 d = (p - centre) / radius;
   return smooth(1.0f + soft, 1.0f - soft, glm::length(d));
@@ -26,14 +28,14 @@ float inside_box(glm::vec2 p, glm::vec2 low, glm::vec2 high) {
 }
 
 struct Room {
-  glm::vec3 light;     // colour of the lamp
-  float level;         // brightness of the wall beside the lamp, of full scale
-  glm::vec2 lamp;      // 0..1, y down
-  int fitting;         // 0 pendant, 1 standing lamp, 2 none in view, 3 television
-  int curtain;         // 0 none, 1 drapes, 2 sheer, 3 roller blind
+  glm::vec3 light;  // colour of the lamp
+  float level;      // brightness of the wall beside the lamp, of full scale
+  glm::vec2 lamp;   // 0..1, y down
+  int fitting;      // 0 pendant, 1 standing lamp, 2 none in view, 3 television
+  int curtain;      // 0 none, 1 drapes, 2 sheer, 3 roller blind
   glm::vec3 cloth;
   glm::vec3 wall;
-  int thing;           // 0 nothing, 1 plant, 2 person, 3 cat, 4 bookshelf, 5 picture
+  int thing;  // 0 nothing, 1 plant, 2 person, 3 cat, 4 bookshelf, 5 picture
 };
 
 const std::array<Room, 12> rooms{{
@@ -75,14 +77,16 @@ glm::vec3 lit_room(const Room& room, glm::vec2 p, std::uint32_t seed) {
       const int spine = static_cast<int>(p.x / 0.021f);
       const std::uint32_t h = mix(seed, static_cast<std::uint32_t>(row), static_cast<std::uint32_t>(spine));
       const float tall = 0.15f + 0.3f * unit(h);
-      const glm::vec3 cloth(0.25f + 0.6f * unit(mix(h, 1)), 0.15f + 0.4f * unit(mix(h, 2)), 0.12f + 0.3f * unit(mix(h, 3)));
+      const glm::vec3 cloth(0.25f + 0.6f * unit(mix(h, 1)), 0.15f + 0.4f * unit(mix(h, 2)),
+                            0.12f + 0.3f * unit(mix(h, 3)));
       colour = in_row > tall ? colour * cloth * 0.9f : colour * 0.25f;
       if (in_row > 0.92f) colour = colour * 0.4f;
     }
   }
   if (room.thing == 5) {  // a framed picture
     if (inside_box(p, {0.14f, 0.34f}, {0.40f, 0.62f}) > 0) colour *= 0.25f;
-    if (inside_box(p, {0.16f, 0.365f}, {0.38f, 0.595f}) > 0) colour = colour * 3.0f * glm::vec3(0.8f, 0.9f, 0.7f) * (0.5f + p.y);
+    if (inside_box(p, {0.16f, 0.365f}, {0.38f, 0.595f}) > 0)
+      colour = colour * 3.0f * glm::vec3(0.8f, 0.9f, 0.7f) * (0.5f + p.y);
   }
   if (room.thing == 1) {  // leaves of a plant on the sill
     float leaf = 0.0f;
@@ -107,15 +111,18 @@ glm::vec3 lit_room(const Room& room, glm::vec2 p, std::uint32_t seed) {
     cat = std::max(cat, inside_disc(p, {0.70f, 0.76f}, {0.05f, 0.048f}));
     for (float side : {-1.0f, 1.0f}) {
       const glm::vec2 ear(0.70f + side * 0.033f, 0.70f);
-      if (p.y > ear.y - 0.02f && p.y < ear.y + 0.05f && std::abs(p.x - ear.x) < 0.018f * (p.y - ear.y + 0.02f) / 0.05f) cat = 1;
+      if (p.y > ear.y - 0.02f && p.y < ear.y + 0.05f && std::abs(p.x - ear.x) < 0.018f * (p.y - ear.y + 0.02f) / 0.05f)
+        cat = 1;
     }
     colour = blend(colour, shade, cat);
   }
   if (room.fitting == 0) {  // pendant
     if (p.y < room.lamp.y && std::abs(p.x - room.lamp.x) < 0.006f) colour *= 0.2f;
-    const float dome = p.y > room.lamp.y - 0.07f && p.y < room.lamp.y && std::abs(p.x - room.lamp.x) < 0.03f + 1.0f * (p.y - room.lamp.y + 0.07f);
+    const float dome = p.y > room.lamp.y - 0.07f && p.y < room.lamp.y &&
+                       std::abs(p.x - room.lamp.x) < 0.03f + 1.0f * (p.y - room.lamp.y + 0.07f);
     colour = blend(colour, room.light * 0.8f, dome ? 0.85f : 0.0f);
-    colour = blend(colour, glm::vec3(1.0f, 0.92f, 0.75f), inside_disc(p, room.lamp + glm::vec2(0, 0.012f), {0.06f, 0.022f}));
+    colour =
+        blend(colour, glm::vec3(1.0f, 0.92f, 0.75f), inside_disc(p, room.lamp + glm::vec2(0, 0.012f), {0.06f, 0.022f}));
   } else if (room.fitting == 1) {  // standing lamp with a shade
     const float dx = std::abs(p.x - room.lamp.x);
     const float dy = p.y - room.lamp.y;
@@ -125,7 +132,9 @@ glm::vec3 lit_room(const Room& room, glm::vec2 p, std::uint32_t seed) {
     }
   } else if (room.fitting == 3) {
     if (inside_box(p, room.lamp - glm::vec2(0.14f, 0.09f), room.lamp + glm::vec2(0.14f, 0.09f)) > 0) {
-      colour = room.light * (0.3f + 0.5f * unit(mix(seed, static_cast<std::uint32_t>(p.x * 18), static_cast<std::uint32_t>(p.y * 18))));
+      colour =
+          room.light *
+          (0.3f + 0.5f * unit(mix(seed, static_cast<std::uint32_t>(p.x * 18), static_cast<std::uint32_t>(p.y * 18))));
     }
   }
   if (room.curtain == 1) {
@@ -133,10 +142,12 @@ glm::vec3 lit_room(const Room& room, glm::vec2 p, std::uint32_t seed) {
     const float edge = std::min(p.x, 1.0f - p.x);
     if (edge < open) {
       const float through = 0.25f + 0.5f * near_lamp;
-      colour = room.cloth * room.light * room.level * through * folds(p.x, p.y, seed) * (0.6f + 0.4f * smooth(0.0f, open, edge));
+      colour = room.cloth * room.light * room.level * through * folds(p.x, p.y, seed) *
+               (0.6f + 0.4f * smooth(0.0f, open, edge));
     }
   } else if (room.curtain == 2) {
-    const glm::vec3 veil = room.cloth * room.light * room.level * (0.35f + 0.65f * near_lamp) * (0.55f + 0.45f * folds(p.x, p.y, seed));
+    const glm::vec3 veil =
+        room.cloth * room.light * room.level * (0.35f + 0.65f * near_lamp) * (0.55f + 0.45f * folds(p.x, p.y, seed));
     colour = blend(colour, veil, 0.75f);
   } else if (room.curtain == 3) {
     if (p.y < 0.46f) {
@@ -157,7 +168,8 @@ glm::vec3 dark_room(int kind, glm::vec2 p, std::uint32_t seed, bool emission) {
   if (kind == 3 && edge < 0.12f) colour = glm::vec3(0.03f, 0.012f, 0.01f) * folds(p.x, p.y, seed);
   if (!emission) return colour;
   // A door left ajar far inside.
-  return kind == 3 && inside_box(p, {0.55f, 0.45f}, {0.60f, 1.0f}) > 0 ? glm::vec3(0.05f, 0.03f, 0.012f) : glm::vec3(0.0f);
+  return kind == 3 && inside_box(p, {0.55f, 0.45f}, {0.60f, 1.0f}) > 0 ? glm::vec3(0.05f, 0.03f, 0.012f)
+                                                                       : glm::vec3(0.0f);
 }
 
 glm::vec3 shelf_of_goods(Goods goods, glm::vec2 p) {
@@ -173,7 +185,8 @@ glm::vec3 shelf_of_goods(Goods goods, glm::vec2 p) {
   if (goods == Goods::cafe) {
     // Pendants over a counter, bottles behind, guests in front.
     if (p.y > 0.25f && p.y < 0.5f && std::fmod(p.x, 0.03f) < 0.02f && p.x > 0.1f && p.x < 0.9f) {
-      const std::uint32_t h = mix(seed, static_cast<std::uint32_t>(p.x / 0.03f), static_cast<std::uint32_t>((p.y - 0.25f) / 0.125f));
+      const std::uint32_t h =
+          mix(seed, static_cast<std::uint32_t>(p.x / 0.03f), static_cast<std::uint32_t>((p.y - 0.25f) / 0.125f));
       if (std::fmod(p.y - 0.25f, 0.125f) > 0.03f + 0.04f * unit(h)) {
         colour = glm::vec3(0.2f + 0.6f * unit(mix(h, 1)), 0.3f + 0.4f * unit(mix(h, 2)), 0.15f) * 0.28f * spot;
       }
@@ -185,7 +198,8 @@ glm::vec3 shelf_of_goods(Goods goods, glm::vec2 p) {
     }
     if (p.y > 0.66f) colour = glm::vec3(0.16f, 0.07f, 0.03f) * spot * (p.y < 0.68f ? 2.0f : 0.6f);
     for (float x : {0.16f, 0.34f, 0.68f}) {
-      const float body = std::max(inside_disc(p, {x, 0.58f}, {0.04f, 0.055f}), inside_disc(p, {x, 0.86f}, {0.09f, 0.23f}));
+      const float body =
+          std::max(inside_disc(p, {x, 0.58f}, {0.04f, 0.055f}), inside_disc(p, {x, 0.86f}, {0.09f, 0.23f}));
       colour = blend(colour, glm::vec3(0.02f, 0.013f, 0.01f), body);
     }
     return colour;
@@ -195,7 +209,9 @@ glm::vec3 shelf_of_goods(Goods goods, glm::vec2 p) {
       float form = inside_disc(p, {x, 0.42f}, {0.075f, 0.14f});
       form = std::max(form, inside_disc(p, {x, 0.66f}, {0.11f - 0.05f * (x == 0.5f), 0.2f}));
       form = std::max(form, inside_box(p, {x - 0.006f, 0.8f}, {x + 0.006f, 0.95f}));
-      const glm::vec3 cloth = x < 0.3f ? glm::vec3(0.45f, 0.08f, 0.08f) : x < 0.6f ? glm::vec3(0.1f, 0.18f, 0.35f) : glm::vec3(0.5f, 0.4f, 0.2f);
+      const glm::vec3 cloth = x < 0.3f   ? glm::vec3(0.45f, 0.08f, 0.08f)
+                              : x < 0.6f ? glm::vec3(0.1f, 0.18f, 0.35f)
+                                         : glm::vec3(0.5f, 0.4f, 0.2f);
       const float shade = 0.4f + 0.6f * smooth(-0.12f, 0.08f, p.x - x);
       colour = blend(colour, cloth * 0.5f * shade * (1.2f - p.y), form);
     }
@@ -212,16 +228,21 @@ glm::vec3 shelf_of_goods(Goods goods, glm::vec2 p) {
       colour = glm::vec3(0.22f, 0.12f, 0.05f) * spot;
     } else if (in_row > tall) {
       if (goods == Goods::books) {
-        const glm::vec3 cloth(0.2f + 0.7f * unit(mix(h, 1)), 0.12f + 0.5f * unit(mix(h, 2)), 0.1f + 0.45f * unit(mix(h, 3)));
-        colour = cloth * 0.32f * spot * (fx > 0.08f ? 1.0f : 0.3f) * (std::abs(in_row - tall - 0.15f) < 0.02f ? 1.8f : 1.0f);
+        const glm::vec3 cloth(0.2f + 0.7f * unit(mix(h, 1)), 0.12f + 0.5f * unit(mix(h, 2)),
+                              0.1f + 0.45f * unit(mix(h, 3)));
+        colour =
+            cloth * 0.32f * spot * (fx > 0.08f ? 1.0f : 0.3f) * (std::abs(in_row - tall - 0.15f) < 0.02f ? 1.8f : 1.0f);
       } else {
         // Loaves and cakes between jars and bottles.
         const bool jar = unit(mix(h, 5)) > 0.45f;
         const glm::vec3 crust = blend(glm::vec3(0.6f, 0.28f, 0.08f), glm::vec3(0.75f, 0.5f, 0.25f), unit(mix(h, 4)));
-        const glm::vec3 bottle(0.12f + 0.5f * unit(mix(h, 6)), 0.2f + 0.35f * unit(mix(h, 7)), 0.10f + 0.4f * unit(mix(h, 8)));
-        const float body = jar ? inside_box({fx, in_row}, {0.22f, tall + 0.12f}, {0.78f, 0.93f}) + inside_box({fx, in_row}, {0.38f, tall}, {0.62f, tall + 0.12f})
+        const glm::vec3 bottle(0.12f + 0.5f * unit(mix(h, 6)), 0.2f + 0.35f * unit(mix(h, 7)),
+                               0.10f + 0.4f * unit(mix(h, 8)));
+        const float body = jar ? inside_box({fx, in_row}, {0.22f, tall + 0.12f}, {0.78f, 0.93f}) +
+                                     inside_box({fx, in_row}, {0.38f, tall}, {0.62f, tall + 0.12f})
                                : inside_disc({fx, in_row}, {0.5f, 0.93f}, {0.46f, 0.93f - tall});
-        const glm::vec3 ware = jar ? bottle * (std::abs(in_row - 0.72f) < 0.1f ? 1.6f : 0.8f) * (0.7f + 0.6f * fx) : crust;
+        const glm::vec3 ware =
+            jar ? bottle * (std::abs(in_row - 0.72f) < 0.1f ? 1.6f : 0.8f) * (0.7f + 0.6f * fx) : crust;
         colour = blend(colour, ware * 0.45f * spot * (1.1f - 0.5f * in_row), body);
       }
     } else {
@@ -239,10 +260,12 @@ Atlas pane_atlas() {
   for (int y = 0; y < 4 * pane_px; ++y) {
     for (int x = 0; x < 4 * pane_px; ++x) {
       const int tile = (y / pane_px) * 4 + x / pane_px;
-      const glm::vec2 p((static_cast<float>(x % pane_px) + 0.5f) / pane_px, (static_cast<float>(y % pane_px) + 0.5f) / pane_px);
+      const glm::vec2 p((static_cast<float>(x % pane_px) + 0.5f) / pane_px,
+                        (static_cast<float>(y % pane_px) + 0.5f) / pane_px);
       const auto seed = static_cast<std::uint32_t>(tile);
       const bool lit = tile < lit_panes;
-      const glm::vec3 emission = lit ? lit_room(rooms[static_cast<std::size_t>(tile)], p, seed) : dark_room(tile - lit_panes, p, seed, true);
+      const glm::vec3 emission =
+          lit ? lit_room(rooms[static_cast<std::size_t>(tile)], p, seed) : dark_room(tile - lit_panes, p, seed, true);
       const glm::vec3 base = lit ? glm::vec3(0.02f) : dark_room(tile - lit_panes, p, seed, false);
       for (int c = 0; c < 3; ++c) {
         atlas.base_colour.at(x, y)[c] = to_byte(to_srgb(base[c]));
@@ -264,7 +287,8 @@ Atlas shopfront_atlas() {
   for (int y = 0; y < 2 * shop_px; ++y) {
     for (int x = 0; x < 2 * shop_px; ++x) {
       const int tile = (y / shop_px) * 2 + x / shop_px;
-      const glm::vec2 p((static_cast<float>(x % shop_px) + 0.5f) / shop_px, (static_cast<float>(y % shop_px) + 0.5f) / shop_px);
+      const glm::vec2 p((static_cast<float>(x % shop_px) + 0.5f) / shop_px,
+                        (static_cast<float>(y % shop_px) + 0.5f) / shop_px);
       const glm::vec3 emission = shelf_of_goods(static_cast<Goods>(tile), p);
       for (int c = 0; c < 3; ++c) {
         atlas.base_colour.at(x, y)[c] = to_byte(to_srgb(0.02f));

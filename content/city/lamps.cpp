@@ -20,7 +20,8 @@ void lantern(Builder b, Glow colour) {
     side.quad(glow(colour), {-low, -h, low}, {low, -h, low}, {top, 0, top}, {-top, 0, top});
     side.cylinder(iron, {-low, -h, low}, {-top, 0, top}, 0.014f, 0.014f, 4);
     side.triangle(iron, {-top - 0.05f, 0, top + 0.05f}, {top + 0.05f, 0, top + 0.05f}, {0, 0.20f, 0});
-    side.quad(iron, {-top - 0.05f, 0.0f, top + 0.05f}, {-top, 0.0f, top - 0.02f}, {top, 0.0f, top - 0.02f}, {top + 0.05f, 0.0f, top + 0.05f});
+    side.quad(iron, {-top - 0.05f, 0.0f, top + 0.05f}, {-top, 0.0f, top - 0.02f}, {top, 0.0f, top - 0.02f},
+              {top + 0.05f, 0.0f, top + 0.05f});
   }
   b.cylinder(iron, {0, -h - 0.05f, 0}, {0, -h, 0}, 0.08f, 0.17f, 8, true);
   b.cylinder(iron, {0, 0.18f, 0}, {0, 0.34f, 0}, 0.035f, 0.012f, 6);
@@ -31,10 +32,22 @@ Mesh post_mesh(Glow colour) {
   mesh.name = "lamp_post";
   Builder b(mesh);
   const Paint iron = plain(cast_iron, Finish::iron);
-  const std::array<glm::vec2, 13> shaft{{{0.045f, 4.22f}, {0.05f, 3.5f}, {0.085f, 3.46f}, {0.085f, 3.38f}, {0.055f, 3.34f}, {0.065f, 1.25f}, {0.10f, 1.20f},
-                                         {0.11f, 1.10f}, {0.075f, 1.02f}, {0.10f, 0.55f}, {0.15f, 0.42f}, {0.17f, 0.12f}, {0.21f, 0.0f}}};
+  const std::array<glm::vec2, 13> shaft{{{0.045f, 4.22f},
+                                         {0.05f, 3.5f},
+                                         {0.085f, 3.46f},
+                                         {0.085f, 3.38f},
+                                         {0.055f, 3.34f},
+                                         {0.065f, 1.25f},
+                                         {0.10f, 1.20f},
+                                         {0.11f, 1.10f},
+                                         {0.075f, 1.02f},
+                                         {0.10f, 0.55f},
+                                         {0.15f, 0.42f},
+                                         {0.17f, 0.12f},
+                                         {0.21f, 0.0f}}};
   b.lathe(iron, shaft, 10);
-  for (float s : {-1.0f, 1.0f}) b.cylinder(iron, {0, 3.42f, 0}, {s * 0.42f, 3.42f, 0}, 0.016f, 0.012f, 5);  // the ladder bar
+  for (float s : {-1.0f, 1.0f})
+    b.cylinder(iron, {0, 3.42f, 0}, {s * 0.42f, 3.42f, 0}, 0.016f, 0.012f, 5);  // the ladder bar
   lantern(b.moved({0, 4.72f, 0}), colour);
   return mesh;
 }
@@ -82,10 +95,12 @@ void add_lamps(Scene& scene) {
     const std::string name = "wall_lamp_" + std::to_string(number++);
     const glm::mat4 frame = wall_frame(wall, out);
     add_node(scene, name, parent, bracket_sodium, frame);
-    add_light(scene, name + "_light", parent, glm::vec3(frame * glm::vec4(0, -0.15f, 1.15f, 1)), {sodium_light, candela, 26.0f, 0, 0, shadow, 0.12f});
+    add_light(scene, name + "_light", parent, glm::vec3(frame * glm::vec4(0, -0.15f, 1.15f, 1)),
+              {sodium_light, candela, 26.0f, 0, 0, shadow, 0.12f});
   };
   const float kerb_x = main_half_m + 0.6f;
-  // Their caps keep the light off the upper floors: a wide spot that points down. Staggered along Lamplighter Street; the ones near the crossing cast shadows.
+  // Their caps keep the light off the upper floors: a wide spot that points down. Staggered along Lamplighter Street;
+  // the ones near the crossing cast shadows.
   post(-kerb_x, 13.5f, false, 400.0f, true);
   post(kerb_x, 24.5f, false, 400.0f, true);
   post(-kerb_x, 36.0f, false, 380.0f, false);

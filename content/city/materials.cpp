@@ -17,8 +17,8 @@ constexpr float glow_strength_cd_m2 = 3000.0f;
 
 const char* mat_name(Mat mat) {
   static const std::array<const char*, static_cast<std::size_t>(Mat::count)> names{
-      "plain", "glow", "stucco", "brick", "ashlar", "roof_tiles", "asphalt", "setts", "slabs", "road_markings", "ironwork",
-      "window_panes", "shopfront", "signs", "standing_water", "glass"};
+      "plain", "glow",          "stucco",   "brick",        "ashlar",    "roof_tiles", "asphalt",        "setts",
+      "slabs", "road_markings", "ironwork", "window_panes", "shopfront", "signs",      "standing_water", "glass"};
   return names[static_cast<std::size_t>(mat)];
 }
 
@@ -60,7 +60,8 @@ struct Maker {
 
   json tiled(const char* name, const Maps& maps) {
     json m;
-    m["pbrMetallicRoughness"]["baseColorTexture"] = texture(std::string(name) + "_base_colour", maps.base_colour, "jpg");
+    m["pbrMetallicRoughness"]["baseColorTexture"] =
+        texture(std::string(name) + "_base_colour", maps.base_colour, "jpg");
     m["pbrMetallicRoughness"]["metallicRoughnessTexture"] =
         texture(std::string(name) + "_roughness", maps.roughness_metalness, "jpg");
     m["normalTexture"] = texture(std::string(name) + "_normal", maps.normal, "jpg");
@@ -70,7 +71,8 @@ struct Maker {
   json lit(const char* name, const Atlas& atlas, float strength, float roughness) {
     json m;
     m["pbrMetallicRoughness"] = {{"metallicFactor", 0.0}, {"roughnessFactor", roughness}};
-    m["pbrMetallicRoughness"]["baseColorTexture"] = texture(std::string(name) + "_base_colour", atlas.base_colour, "jpg");
+    m["pbrMetallicRoughness"]["baseColorTexture"] =
+        texture(std::string(name) + "_base_colour", atlas.base_colour, "jpg");
     m["emissiveTexture"] = texture(std::string(name) + "_emission", atlas.emission, "jpg");
     emit(m, strength);
     return m;
@@ -89,37 +91,52 @@ json make(Maker& maker, Mat mat, bool wet) {
       m["pbrMetallicRoughness"]["metallicRoughnessTexture"] = maker.texture("finishes", finish_palette(), "png");
       return m;
     case Mat::glow:
-      m["pbrMetallicRoughness"] = {{"baseColorFactor", {0.02, 0.02, 0.02, 1.0}}, {"metallicFactor", 0.0}, {"roughnessFactor", 0.2}};
+      m["pbrMetallicRoughness"] = {
+          {"baseColorFactor", {0.02, 0.02, 0.02, 1.0}}, {"metallicFactor", 0.0}, {"roughnessFactor", 0.2}};
       m["emissiveTexture"] = maker.texture("glows", glow_palette(), "png");
       Maker::emit(m, glow_strength_cd_m2);
       return m;
-    case Mat::stucco: return maker.tiled("stucco", stucco_maps(wet));
-    case Mat::brick: return maker.tiled("brick", brick_maps(wet));
-    case Mat::ashlar: return maker.tiled("ashlar", ashlar_maps(wet));
-    case Mat::tiles: return maker.tiled("roof_tiles", tile_maps(wet));
-    case Mat::asphalt: return maker.tiled("asphalt", asphalt_maps(wet));
-    case Mat::setts: return maker.tiled("setts", setts_maps(wet));
-    case Mat::slabs: return maker.tiled("slabs", slabs_maps(wet));
-    case Mat::ironwork: return maker.tiled("ironwork", ironwork_maps(wet));
+    case Mat::stucco:
+      return maker.tiled("stucco", stucco_maps(wet));
+    case Mat::brick:
+      return maker.tiled("brick", brick_maps(wet));
+    case Mat::ashlar:
+      return maker.tiled("ashlar", ashlar_maps(wet));
+    case Mat::tiles:
+      return maker.tiled("roof_tiles", tile_maps(wet));
+    case Mat::asphalt:
+      return maker.tiled("asphalt", asphalt_maps(wet));
+    case Mat::setts:
+      return maker.tiled("setts", setts_maps(wet));
+    case Mat::slabs:
+      return maker.tiled("slabs", slabs_maps(wet));
+    case Mat::ironwork:
+      return maker.tiled("ironwork", ironwork_maps(wet));
     case Mat::markings:
       m = maker.tiled("markings", marking_maps(wet));
       m.erase("normalTexture");
       maker.set.images.pop_back();
       return m;
-    case Mat::panes: return maker.lit("panes", pane_atlas(), pane_strength_cd_m2, 0.06f);
-    case Mat::shopfront: return maker.lit("shopfront", shopfront_atlas(), shopfront_strength_cd_m2, 0.05f);
-    case Mat::signs: return maker.lit("signs", sign_atlas(), sign_strength_cd_m2, 0.25f);
+    case Mat::panes:
+      return maker.lit("panes", pane_atlas(), pane_strength_cd_m2, 0.06f);
+    case Mat::shopfront:
+      return maker.lit("shopfront", shopfront_atlas(), shopfront_strength_cd_m2, 0.05f);
+    case Mat::signs:
+      return maker.lit("signs", sign_atlas(), sign_strength_cd_m2, 0.25f);
     case Mat::water:
       // Clear water over dark ground: next to nothing comes back but the reflection (F0 = 0.02 against 0.04).
-      m["pbrMetallicRoughness"] = {{"baseColorFactor", {0.016, 0.016, 0.017, 1.0}}, {"metallicFactor", 0.0}, {"roughnessFactor", 0.045}};
+      m["pbrMetallicRoughness"] = {
+          {"baseColorFactor", {0.016, 0.016, 0.017, 1.0}}, {"metallicFactor", 0.0}, {"roughnessFactor", 0.045}};
       m["extras"]["standing_water"] = true;
       return m;
     case Mat::glass:
-      m["pbrMetallicRoughness"] = {{"baseColorFactor", {0.02, 0.025, 0.025, 0.10}}, {"metallicFactor", 0.0}, {"roughnessFactor", 0.03}};
+      m["pbrMetallicRoughness"] = {
+          {"baseColorFactor", {0.02, 0.025, 0.025, 0.10}}, {"metallicFactor", 0.0}, {"roughnessFactor", 0.03}};
       m["alphaMode"] = "BLEND";
       m["doubleSided"] = true;
       return m;
-    case Mat::count: break;
+    case Mat::count:
+      break;
   }
   return m;
 }

@@ -14,14 +14,16 @@ void glyph(Builder& b, Glow colour, const NeonGlyph& g, float x, float y, float 
     b.tube(glow(colour), path, tube_m, 4);
     // The electrode ends turn back into the wall.
     for (const glm::vec3& end : {path.front(), path.back()}) {
-      b.cylinder(plain(glm::vec3(0.03f), Finish::rubber), {end.x, end.y, 0.0f}, {end.x, end.y, stand_off_m}, tube_m * 0.8f, tube_m * 0.8f, 3);
+      b.cylinder(plain(glm::vec3(0.03f), Finish::rubber), {end.x, end.y, 0.0f}, {end.x, end.y, stand_off_m},
+                 tube_m * 0.8f, tube_m * 0.8f, 3);
     }
   }
 }
 
 }  // namespace
 
-float neon_text(Builder& b, Glow colour, const std::string& capitals, float x, float y, float height_m, float tube_m, float spacing) {
+float neon_text(Builder& b, Glow colour, const std::string& capitals, float x, float y, float height_m, float tube_m,
+                float spacing) {
   float pen = x;
   for (char c : capitals) {
     const NeonGlyph g = neon_glyph(c);
@@ -31,7 +33,8 @@ float neon_text(Builder& b, Glow colour, const std::string& capitals, float x, f
   return pen - spacing * height_m - x;
 }
 
-void neon_column(Builder& b, Glow colour, const std::string& capitals, float x, float y, float height_m, float step_m, float tube_m) {
+void neon_column(Builder& b, Glow colour, const std::string& capitals, float x, float y, float height_m, float step_m,
+                 float tube_m) {
   float pen = y;
   for (char c : capitals) {
     const NeonGlyph g = neon_glyph(c);

@@ -22,7 +22,8 @@ int add_mesh_node(Scene& scene, int parent, Mesh mesh, const glm::mat4& frame) {
   return add_node(scene, name, parent, scene.add_mesh(std::move(mesh)), frame);
 }
 
-int add_light(Scene& scene, const std::string& name, int parent, glm::vec3 position, const Lamp& lamp, glm::vec3 direction) {
+int add_light(Scene& scene, const std::string& name, int parent, glm::vec3 position, const Lamp& lamp,
+              glm::vec3 direction) {
   Light light;
   light.name = name;
   light.spot = lamp.outer_deg > 0.0f;
@@ -50,7 +51,8 @@ int add_light(Scene& scene, const std::string& name, int parent, glm::vec3 posit
 
 namespace {
 
-int add_mark(Scene& scene, const std::string& schema, int parent, const glm::mat4& frame, const nlohmann::json& fields) {
+int add_mark(Scene& scene, const std::string& schema, int parent, const glm::mat4& frame,
+             const nlohmann::json& fields) {
   int count = 0;
   for (const Node& n : scene.nodes) count += n.name.starts_with(schema) ? 1 : 0;
   const int node = add_node(scene, schema + "_" + std::to_string(count), parent, -1, frame);
@@ -63,7 +65,8 @@ int add_mark(Scene& scene, const std::string& schema, int parent, const glm::mat
 }  // namespace
 
 void mark_drip(Scene& scene, int parent, const glm::mat4& frame, float length_m, float catchment_m, float lip_mm) {
-  add_mark(scene, "drip_source", parent, frame, {{"length_m", length_m}, {"catchment_depth_m", catchment_m}, {"lip_radius_mm", lip_mm}});
+  add_mark(scene, "drip_source", parent, frame,
+           {{"length_m", length_m}, {"catchment_depth_m", catchment_m}, {"lip_radius_mm", lip_mm}});
 }
 
 void mark_pane(Scene& scene, int parent, const glm::mat4& frame, glm::vec2 size_m) {

@@ -21,7 +21,8 @@ struct Lamp {
   bool casts_shadow = false;
   float source_radius_m = 0.08f;
 };
-int add_light(Scene&, const std::string& name, int parent, glm::vec3 position, const Lamp&, glm::vec3 direction = {0, -1, 0});
+int add_light(Scene&, const std::string& name, int parent, glm::vec3 position, const Lamp&,
+              glm::vec3 direction = {0, -1, 0});
 // Marks: a line along the frame's x, or a rectangle in its x and y (pane) or x and z (puddle), centred.
 void mark_drip(Scene&, int parent, const glm::mat4& frame, float length_m, float catchment_m, float lip_mm);
 void mark_pane(Scene&, int parent, const glm::mat4& frame, glm::vec2 size_m);

@@ -13,26 +13,31 @@ void skylight(Builder& b, float x, float y, float z, float slope) {
   const float len = std::sqrt(1.0f + slope * slope);
   const glm::vec3 up(0.0f, slope / len, -1.0f / len), out(0.0f, 1.0f / len, slope / len), right(1, 0, 0);
   const glm::vec3 c = glm::vec3(x, y, z) + out * 0.06f;
-  b.quad(plain(glm::vec3(0.02f), Finish::gloss), c - right * 0.4f - up * 0.6f, c + right * 0.4f - up * 0.6f, c + right * 0.4f + up * 0.6f, c - right * 0.4f + up * 0.6f);
+  b.quad(plain(glm::vec3(0.02f), Finish::gloss), c - right * 0.4f - up * 0.6f, c + right * 0.4f - up * 0.6f,
+         c + right * 0.4f + up * 0.6f, c - right * 0.4f + up * 0.6f);
 }
 
 }  // namespace
 
 void gutter(Builder& b, float x0, float x1, float y, float z) {
   const Paint metal = plain(zinc, Finish::iron);
-  const std::array<glm::vec2, 5> outside{{{z, y - 0.12f}, {z + 0.06f, y - 0.11f}, {z + 0.11f, y - 0.07f}, {z + 0.13f, y}, {z + 0.12f, y + 0.012f}}};
+  const std::array<glm::vec2, 5> outside{
+      {{z, y - 0.12f}, {z + 0.06f, y - 0.11f}, {z + 0.11f, y - 0.07f}, {z + 0.13f, y}, {z + 0.12f, y + 0.012f}}};
   b.moulding(metal, outside, x0, x1, 0.0f, 0.0f, false);
-  b.quad(plain(zinc * 0.3f, Finish::gloss), {x0, y - 0.02f, z + 0.12f}, {x1, y - 0.02f, z + 0.12f}, {x1, y - 0.02f, z}, {x0, y - 0.02f, z});
+  b.quad(plain(zinc * 0.3f, Finish::gloss), {x0, y - 0.02f, z + 0.12f}, {x1, y - 0.02f, z + 0.12f}, {x1, y - 0.02f, z},
+         {x0, y - 0.02f, z});
 }
 
 void chimney(Builder& parent, glm::vec3 foot, float height, int pots) {
   Builder b = parent.moved(foot);
   const float half = 0.28f + 0.2f * static_cast<float>(pots);
   b.box(tiling(Mat::brick, glm::vec3(0.75f)), {-half, -2.0f, -0.35f}, {half, height, 0.35f}, face_no_bottom);
-  b.box(plain(glm::vec3(0.25f), Finish::wet_stone), {-half - 0.07f, height - 0.25f, -0.42f}, {half + 0.07f, height - 0.10f, 0.42f});
+  b.box(plain(glm::vec3(0.25f), Finish::wet_stone), {-half - 0.07f, height - 0.25f, -0.42f},
+        {half + 0.07f, height - 0.10f, 0.42f});
   for (int k = 0; k < pots; ++k) {
     const float x = (static_cast<float>(k) - 0.5f * static_cast<float>(pots - 1)) * 0.42f;
-    b.cylinder(plain({0.22f, 0.09f, 0.05f}, Finish::matte), {x, height - 0.02f, 0}, {x, height + 0.5f, 0}, 0.14f, 0.11f, 7, false, true);
+    b.cylinder(plain({0.22f, 0.09f, 0.05f}, Finish::matte), {x, height - 0.02f, 0}, {x, height + 0.5f, 0}, 0.14f, 0.11f,
+               7, false, true);
   }
 }
 
@@ -72,7 +77,8 @@ void saddle_roof(Builder& b, const Style& style, RoofSpan s, glm::vec3 tint, Dic
   const float ridge = s.eaves_m + slope * (half + z_eave) * 0.92f;
   const float w = s.width_m;
   b.quad(tiles, {0, s.eaves_m, z_eave}, {w, s.eaves_m, z_eave}, {w, ridge, -half}, {0, ridge, -half});
-  b.quad(tiles, {w, s.eaves_m, -s.depth_m - z_eave}, {0, s.eaves_m, -s.depth_m - z_eave}, {0, ridge, -half}, {w, ridge, -half});
+  b.quad(tiles, {w, s.eaves_m, -s.depth_m - z_eave}, {0, s.eaves_m, -s.depth_m - z_eave}, {0, ridge, -half},
+         {w, ridge, -half});
   const Paint wall = tiling(Mat::stucco, style.wall.colour * 0.6f);
   b.triangle(wall, {w, s.eaves_m, 0}, {w, s.eaves_m, -s.depth_m}, {w, ridge - 0.05f, -half});
   b.triangle(wall, {0, s.eaves_m, -s.depth_m}, {0, s.eaves_m, 0}, {0, ridge - 0.05f, -half});
@@ -87,7 +93,8 @@ void saddle_roof(Builder& b, const Style& style, RoofSpan s, glm::vec3 tint, Dic
     dormer(b, style, x, s.eaves_m + run * (z_eave - z) - 0.02f, z, run, tint, dice);
     if (dice.chance(0.4f)) skylight(b, x + 1.6f, s.eaves_m + run * (z_eave + 3.0f), -3.0f, run);
   }
-  chimney(b, {dice.chance(0.5f) ? 0.9f : w - 0.9f, ridge - 0.6f, -half + 0.9f}, dice.between(1.6f, 2.4f), 1 + dice.below(3));
+  chimney(b, {dice.chance(0.5f) ? 0.9f : w - 0.9f, ridge - 0.6f, -half + 0.9f}, dice.between(1.6f, 2.4f),
+          1 + dice.below(3));
 }
 
 void mansard_roof(Builder& b, const Style& style, RoofSpan s, glm::vec3 tint, Dice& dice) {
@@ -98,10 +105,12 @@ void mansard_roof(Builder& b, const Style& style, RoofSpan s, glm::vec3 tint, Di
   const float slope = rise / (inset + 0.2f);
   const float y = s.eaves_m;
   b.quad(tiles, {0, y, 0.2f}, {w, y, 0.2f}, {w, y + rise, -inset}, {0, y + rise, -inset});
-  b.quad(tiles, {w, y, -s.depth_m}, {0, y, -s.depth_m}, {0, y + rise, -s.depth_m + inset}, {w, y + rise, -s.depth_m + inset});
+  b.quad(tiles, {w, y, -s.depth_m}, {0, y, -s.depth_m}, {0, y + rise, -s.depth_m + inset},
+         {w, y + rise, -s.depth_m + inset});
   const Paint wall = tiling(Mat::stucco, style.wall.colour * 0.55f);
   for (float x : {0.0f, w}) {
-    std::array<glm::vec3, 4> side{{{x, y, 0.2f}, {x, y, -s.depth_m}, {x, y + rise, -s.depth_m + inset}, {x, y + rise, -inset}}};
+    std::array<glm::vec3, 4> side{
+        {{x, y, 0.2f}, {x, y, -s.depth_m}, {x, y + rise, -s.depth_m + inset}, {x, y + rise, -inset}}};
     if (x == 0.0f) std::swap(side[1], side[3]);
     b.fan(wall, side);
   }
@@ -109,7 +118,8 @@ void mansard_roof(Builder& b, const Style& style, RoofSpan s, glm::vec3 tint, Di
   const float ridge = y + rise + 1.1f;
   const float half = -0.5f * s.depth_m;
   b.quad(lead, {0, y + rise, -inset}, {w, y + rise, -inset}, {w, ridge, half}, {0, ridge, half});
-  b.quad(lead, {w, y + rise, -s.depth_m + inset}, {0, y + rise, -s.depth_m + inset}, {0, ridge, half}, {w, ridge, half});
+  b.quad(lead, {w, y + rise, -s.depth_m + inset}, {0, y + rise, -s.depth_m + inset}, {0, ridge, half},
+         {w, ridge, half});
   b.triangle(wall, {w, y + rise, -inset}, {w, y + rise, -s.depth_m + inset}, {w, ridge, half});
   b.triangle(wall, {0, y + rise, -s.depth_m + inset}, {0, y + rise, -inset}, {0, ridge, half});
   gutter(b, 0.0f, w, y + 0.02f, 0.40f);
@@ -126,26 +136,34 @@ void flat_roof(Builder& b, const Style& style, RoofSpan s, Dice& dice) {
   const float y = s.eaves_m;
   const float parapet = 0.95f;
   const float w = s.width_m;
-  b.quad(plain(glm::vec3(0.05f, 0.05f, 0.052f), Finish::wet_stone), {0, y, 0}, {w, y, 0}, {w, y, -s.depth_m}, {0, y, -s.depth_m});
+  b.quad(plain(glm::vec3(0.05f, 0.05f, 0.052f), Finish::wet_stone), {0, y, 0}, {w, y, 0}, {w, y, -s.depth_m},
+         {0, y, -s.depth_m});
   b.box(wall, {0, y, -0.30f}, {w, y + parapet, 0.0f}, face_front | face_back | face_top);
   b.box(wall, {0, y, -s.depth_m}, {w, y + parapet, -s.depth_m + 0.3f}, face_front | face_back | face_top);
   b.box(wall, {0, y, -s.depth_m + 0.3f}, {0.3f, y + parapet, -0.3f}, face_sides | face_top);
   b.box(wall, {w - 0.3f, y, -s.depth_m + 0.3f}, {w, y + parapet, -0.3f}, face_sides | face_top);
-  const std::array<glm::vec2, 4> coping{{{0.0f, y + parapet}, {0.10f, y + parapet + 0.02f}, {0.10f, y + parapet + 0.10f}, {-0.38f, y + parapet + 0.13f}}};
+  const std::array<glm::vec2, 4> coping{
+      {{0.0f, y + parapet}, {0.10f, y + parapet + 0.02f}, {0.10f, y + parapet + 0.10f}, {-0.38f, y + parapet + 0.13f}}};
   b.moulding(wall, coping, 0.0f, w);
   // A stair head with a lamp over its door, a water tank, vents.
   const float cx = 0.68f * w;
   const float cz = -0.62f * s.depth_m;
-  b.box(tiling(Mat::brick, glm::vec3(0.8f)), {cx - 1.4f, y, cz - 1.3f}, {cx + 1.4f, y + 2.6f, cz + 1.3f}, face_no_bottom);
-  b.box(plain(glm::vec3(0.10f), Finish::wet_stone), {cx - 1.55f, y + 2.6f, cz - 1.45f}, {cx + 1.55f, y + 2.75f, cz + 1.6f});
-  b.box(plain({0.05f, 0.09f, 0.08f}, Finish::paint), {cx - 0.5f, y, cz + 1.3f}, {cx + 0.5f, y + 2.1f, cz + 1.35f}, face_no_back);
+  b.box(tiling(Mat::brick, glm::vec3(0.8f)), {cx - 1.4f, y, cz - 1.3f}, {cx + 1.4f, y + 2.6f, cz + 1.3f},
+        face_no_bottom);
+  b.box(plain(glm::vec3(0.10f), Finish::wet_stone), {cx - 1.55f, y + 2.6f, cz - 1.45f},
+        {cx + 1.55f, y + 2.75f, cz + 1.6f});
+  b.box(plain({0.05f, 0.09f, 0.08f}, Finish::paint), {cx - 0.5f, y, cz + 1.3f}, {cx + 0.5f, y + 2.1f, cz + 1.35f},
+        face_no_back);
   b.box(glow(Glow::candle), {cx - 0.07f, y + 2.25f, cz + 1.31f}, {cx + 0.07f, y + 2.42f, cz + 1.42f});
-  b.cylinder(plain({0.12f, 0.08f, 0.05f}, Finish::matte), {0.24f * w, y + 0.5f, cz}, {0.24f * w, y + 2.4f, cz}, 1.0f, 1.0f, 14);
-  b.cylinder(plain(glm::vec3(0.08f), Finish::iron), {0.24f * w, y + 2.4f, cz}, {0.24f * w, y + 2.9f, cz}, 1.08f, 0.05f, 14);
+  b.cylinder(plain({0.12f, 0.08f, 0.05f}, Finish::matte), {0.24f * w, y + 0.5f, cz}, {0.24f * w, y + 2.4f, cz}, 1.0f,
+             1.0f, 14);
+  b.cylinder(plain(glm::vec3(0.08f), Finish::iron), {0.24f * w, y + 2.4f, cz}, {0.24f * w, y + 2.9f, cz}, 1.08f, 0.05f,
+             14);
   for (int k = 0; k < 4; ++k) {
     const float t = 1.5708f * static_cast<float>(k) + 0.78f;
     const float x = 0.24f * w + 0.8f * std::cos(t);
-    b.cylinder(plain(glm::vec3(0.05f), Finish::iron), {x, y, cz + 0.8f * std::sin(t)}, {x, y + 0.55f, cz + 0.8f * std::sin(t)}, 0.05f, 0.05f, 5);
+    b.cylinder(plain(glm::vec3(0.05f), Finish::iron), {x, y, cz + 0.8f * std::sin(t)},
+               {x, y + 0.55f, cz + 0.8f * std::sin(t)}, 0.05f, 0.05f, 5);
   }
   for (int k = 0; k < 3; ++k) {
     const float x = w * (0.2f + 0.25f * static_cast<float>(k)) + dice.next();

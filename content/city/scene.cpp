@@ -7,53 +7,88 @@ namespace petrichor::city {
 
 glm::vec3 emission_cd_m2(Glow glow) {
   switch (glow) {
-    case Glow::sodium: return {2500.0f, 1290.0f, 400.0f};
-    case Glow::white: return {1900.0f, 1780.0f, 1530.0f};
-    case Glow::candle: return {900.0f, 450.0f, 140.0f};
-    case Glow::neon_red: return {430.0f, 6.0f, 2.5f};
-    case Glow::neon_pink: return {420.0f, 14.0f, 130.0f};
-    case Glow::neon_blue: return {10.0f, 36.0f, 560.0f};
-    case Glow::neon_cyan: return {7.0f, 230.0f, 300.0f};
-    case Glow::neon_green: return {8.0f, 330.0f, 42.0f};
-    case Glow::neon_amber: return {480.0f, 125.0f, 5.0f};
-    case Glow::signal_red: return {1100.0f, 9.0f, 3.0f};
-    case Glow::signal_green: return {8.0f, 850.0f, 300.0f};
-    case Glow::headlight: return {3000.0f, 2650.0f, 2050.0f};
-    case Glow::taillight: return {320.0f, 2.6f, 1.2f};
-    case Glow::clock: return {150.0f, 125.0f, 75.0f};
-    case Glow::shop: return {220.0f, 140.0f, 62.0f};
-    case Glow::strip: return {700.0f, 720.0f, 700.0f};
-    case Glow::count: break;
+    case Glow::sodium:
+      return {2500.0f, 1290.0f, 400.0f};
+    case Glow::white:
+      return {1900.0f, 1780.0f, 1530.0f};
+    case Glow::candle:
+      return {900.0f, 450.0f, 140.0f};
+    case Glow::neon_red:
+      return {430.0f, 6.0f, 2.5f};
+    case Glow::neon_pink:
+      return {420.0f, 14.0f, 130.0f};
+    case Glow::neon_blue:
+      return {10.0f, 36.0f, 560.0f};
+    case Glow::neon_cyan:
+      return {7.0f, 230.0f, 300.0f};
+    case Glow::neon_green:
+      return {8.0f, 330.0f, 42.0f};
+    case Glow::neon_amber:
+      return {480.0f, 125.0f, 5.0f};
+    case Glow::signal_red:
+      return {1100.0f, 9.0f, 3.0f};
+    case Glow::signal_green:
+      return {8.0f, 850.0f, 300.0f};
+    case Glow::headlight:
+      return {3000.0f, 2650.0f, 2050.0f};
+    case Glow::taillight:
+      return {320.0f, 2.6f, 1.2f};
+    case Glow::clock:
+      return {150.0f, 125.0f, 75.0f};
+    case Glow::shop:
+      return {220.0f, 140.0f, 62.0f};
+    case Glow::strip:
+      return {700.0f, 720.0f, 700.0f};
+    case Glow::count:
+      break;
   }
   return glm::vec3(0.0f);
 }
 
 glm::vec2 roughness_metalness(Finish finish) {
   switch (finish) {
-    case Finish::matte: return {0.72f, 0.0f};
-    case Finish::paint: return {0.38f, 0.0f};
-    case Finish::gloss: return {0.12f, 0.0f};
-    case Finish::wet_stone: return {0.30f, 0.0f};
-    case Finish::rubber: return {0.55f, 0.0f};
-    case Finish::iron: return {0.36f, 0.85f};
-    case Finish::steel: return {0.28f, 1.0f};
-    case Finish::chrome: return {0.09f, 1.0f};
-    case Finish::brass: return {0.22f, 1.0f};
-    case Finish::count: break;
+    case Finish::matte:
+      return {0.72f, 0.0f};
+    case Finish::paint:
+      return {0.38f, 0.0f};
+    case Finish::gloss:
+      return {0.12f, 0.0f};
+    case Finish::wet_stone:
+      return {0.30f, 0.0f};
+    case Finish::rubber:
+      return {0.55f, 0.0f};
+    case Finish::iron:
+      return {0.36f, 0.85f};
+    case Finish::steel:
+      return {0.28f, 1.0f};
+    case Finish::chrome:
+      return {0.09f, 1.0f};
+    case Finish::brass:
+      return {0.22f, 1.0f};
+    case Finish::count:
+      break;
   }
   return {1.0f, 0.0f};
 }
 
 glm::vec2 texture_metres(Mat mat) {
   switch (mat) {
-    case Mat::stucco: return {3.2f, 3.2f};
-    case Mat::brick: return {2.0f, 1.95f};
-    case Mat::ashlar: return {2.4f, 2.4f};
-    case Mat::tiles: return {2.0f, 2.0f};
-    case Mat::asphalt: return {5.0f, 10.0f};
-    case Mat::setts: return {3.0f, 3.0f};
-    case Mat::slabs: return {4.0f, 4.0f};
-    default: return {1.0f, 1.0f};
+    case Mat::stucco:
+      return {3.2f, 3.2f};
+    case Mat::brick:
+      return {2.0f, 1.95f};
+    case Mat::ashlar:
+      return {2.4f, 2.4f};
+    case Mat::tiles:
+      return {2.0f, 2.0f};
+    case Mat::asphalt:
+      return {5.0f, 10.0f};
+    case Mat::setts:
+      return {3.0f, 3.0f};
+    case Mat::slabs:
+      return {4.0f, 4.0f};
+    default:
+      return {1.0f, 1.0f};
   }
 }
 
@@ -66,8 +101,10 @@ bool has_normal_map(Mat mat) {
     case Mat::asphalt:
     case Mat::setts:
     case Mat::slabs:
-    case Mat::ironwork: return true;
-    default: return false;
+    case Mat::ironwork:
+      return true;
+    default:
+      return false;
   }
 }
 

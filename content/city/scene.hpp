@@ -15,8 +15,8 @@ namespace petrichor::city {
 // One entry per glTF material. Colour varies by vertex (COLOR_0 multiplies the base colour), so whole
 // buildings share a handful of materials and draw in a handful of calls.
 enum class Mat : std::uint8_t {
-  plain,      // paint, metal, rubber, wood: roughness and metalness from a palette texture (Finish)
-  glow,       // everything that shines by itself: colours of the emission palette (Glow)
+  plain,  // paint, metal, rubber, wood: roughness and metalness from a palette texture (Finish)
+  glow,   // everything that shines by itself: colours of the emission palette (Glow)
   stucco,
   brick,
   ashlar,
@@ -36,8 +36,23 @@ enum class Mat : std::uint8_t {
 
 enum class Finish : std::uint8_t { matte, paint, gloss, wet_stone, rubber, iron, steel, chrome, brass, count };
 enum class Glow : std::uint8_t {
-  sodium, white, candle, neon_red, neon_pink, neon_blue, neon_cyan, neon_green, neon_amber, signal_red, signal_green,
-  headlight, taillight, clock, shop, strip, count
+  sodium,
+  white,
+  candle,
+  neon_red,
+  neon_pink,
+  neon_blue,
+  neon_cyan,
+  neon_green,
+  neon_amber,
+  signal_red,
+  signal_green,
+  headlight,
+  taillight,
+  clock,
+  shop,
+  strip,
+  count
 };
 
 // Emission palette, in cd/m2 (white point sRGB). A lamp's glass gives luminance x area = the candela of its light.
@@ -52,8 +67,8 @@ struct Vertex {
   glm::vec3 position_m;
   glm::vec3 normal;
   glm::vec2 uv;
-  glm::vec3 colour;           // linear, multiplies the base colour
-  float puddle_depth_m = 0;   // TEXCOORD_1.x = depth / puddle_depth_unit_m on street materials
+  glm::vec3 colour;          // linear, multiplies the base colour
+  float puddle_depth_m = 0;  // TEXCOORD_1.x = depth / puddle_depth_unit_m on street materials
 };
 
 inline constexpr float puddle_depth_unit_m = 0.03f;

@@ -30,7 +30,8 @@ void shop_front(Builder& b, const Style& style, const Facade& f, float x0, float
   }
   // Fascia with its board, and a small cornice over it.
   b.box(joinery, {l + 0.16f, fascia0, 0}, {r - 0.16f, fascia1, 0.08f}, face_front | face_bottom);
-  const std::array<glm::vec2, 4> hood{{{0.08f, fascia1 - 0.04f}, {0.22f, fascia1 + 0.03f}, {0.24f, fascia1 + 0.10f}, {0.0f, fascia1 + 0.14f}}};
+  const std::array<glm::vec2, 4> hood{
+      {{0.08f, fascia1 - 0.04f}, {0.22f, fascia1 + 0.03f}, {0.24f, fascia1 + 0.10f}, {0.0f, fascia1 + 0.14f}}};
   b.moulding(joinery, hood, l - 0.1f, r + 0.1f);
   if (f.sign >= 0) {
     const auto sign = static_cast<Sign>(f.sign);
@@ -39,14 +40,21 @@ void shop_front(Builder& b, const Style& style, const Facade& f, float x0, float
     const float hh = half / sign_aspect(sign);
     const float cx = 0.5f * (l + r);
     const float cy = 0.5f * (fascia0 + fascia1) + 0.01f;
-    b.picture(Mat::signs, glm::vec3(1.0f), sign_rect(sign), {cx - half, cy - hh, 0.095f}, {cx + half, cy - hh, 0.095f}, {cx + half, cy + hh, 0.095f},
-              {cx - half, cy + hh, 0.095f});
+    b.picture(Mat::signs, glm::vec3(1.0f), sign_rect(sign), {cx - half, cy - hh, 0.095f}, {cx + half, cy - hh, 0.095f},
+              {cx + half, cy + hh, 0.095f}, {cx - half, cy + hh, 0.095f});
     for (float s : {-0.55f, 0.55f}) {  // swan-neck lamps over the board
       const float x = cx + s * half;
-      const std::array<glm::vec3, 4> neck{{{x, fascia1 + 0.2f, 0.0f}, {x, fascia1 + 0.34f, 0.2f}, {x, fascia1 + 0.3f, 0.4f}, {x, fascia1 + 0.17f, 0.44f}}};
+      const std::array<glm::vec3, 4> neck{{{x, fascia1 + 0.2f, 0.0f},
+                                           {x, fascia1 + 0.34f, 0.2f},
+                                           {x, fascia1 + 0.3f, 0.4f},
+                                           {x, fascia1 + 0.17f, 0.44f}}};
       b.tube(plain(glm::vec3(0.03f), Finish::iron), neck, 0.016f, 4);
-      b.cylinder(plain({0.05f, 0.07f, 0.06f}, Finish::paint), {x, fascia1 + 0.06f, 0.46f}, {x, fascia1 + 0.19f, 0.44f}, 0.11f, 0.03f, 8);
-      const std::array<glm::vec3, 4> mouth{{{x - 0.07f, fascia1 + 0.075f, 0.40f}, {x + 0.07f, fascia1 + 0.075f, 0.40f}, {x + 0.07f, fascia1 + 0.075f, 0.53f}, {x - 0.07f, fascia1 + 0.075f, 0.53f}}};
+      b.cylinder(plain({0.05f, 0.07f, 0.06f}, Finish::paint), {x, fascia1 + 0.06f, 0.46f}, {x, fascia1 + 0.19f, 0.44f},
+                 0.11f, 0.03f, 8);
+      const std::array<glm::vec3, 4> mouth{{{x - 0.07f, fascia1 + 0.075f, 0.40f},
+                                            {x + 0.07f, fascia1 + 0.075f, 0.40f},
+                                            {x + 0.07f, fascia1 + 0.075f, 0.53f},
+                                            {x - 0.07f, fascia1 + 0.075f, 0.53f}}};
       b.fan(glow(Glow::candle), mouth);
     }
   }
@@ -63,8 +71,10 @@ void shop_front(Builder& b, const Style& style, const Facade& f, float x0, float
     UvRect rect = goods_rect(static_cast<Goods>(f.goods));
     const float slack = (1.0f - share) * (rect.maximum.x - rect.minimum.x);
     rect.minimum.x += slack * (a < dx ? 0.0f : 1.0f);
-    rect.maximum.x = rect.minimum.x + share * (goods_rect(static_cast<Goods>(f.goods)).maximum.x - goods_rect(static_cast<Goods>(f.goods)).minimum.x);
-    b.picture(Mat::shopfront, glm::vec3(1.0f), rect, {a, riser, -depth}, {c, riser, -depth}, {c, fascia0, -depth}, {a, fascia0, -depth});
+    rect.maximum.x = rect.minimum.x + share * (goods_rect(static_cast<Goods>(f.goods)).maximum.x -
+                                               goods_rect(static_cast<Goods>(f.goods)).minimum.x);
+    b.picture(Mat::shopfront, glm::vec3(1.0f), rect, {a, riser, -depth}, {c, riser, -depth}, {c, fascia0, -depth},
+              {a, fascia0, -depth});
     const int panes = std::max(1, static_cast<int>(std::lround((c - a) / 1.1f)));
     for (int k = 0; k <= panes; ++k) {
       const float x = a + (c - a) * static_cast<float>(k) / static_cast<float>(panes);
@@ -76,14 +86,18 @@ void shop_front(Builder& b, const Style& style, const Facade& f, float x0, float
   display(dx + door_w, r - 0.16f);
   const float dd = -0.75f;
   b.quad(joinery, {dx, 0.1f, 0}, {dx, 0.1f, dd}, {dx, fascia0, dd}, {dx, fascia0, 0});
-  b.quad(joinery, {dx + door_w, 0.1f, dd}, {dx + door_w, 0.1f, 0}, {dx + door_w, fascia0, 0}, {dx + door_w, fascia0, dd});
+  b.quad(joinery, {dx + door_w, 0.1f, dd}, {dx + door_w, 0.1f, 0}, {dx + door_w, fascia0, 0},
+         {dx + door_w, fascia0, dd});
   b.quad(stone, {dx, fascia0, dd}, {dx + door_w, fascia0, dd}, {dx + door_w, fascia0, 0}, {dx, fascia0, 0});
   b.quad(stone, {dx, 0.19f, 0}, {dx + door_w, 0.19f, 0}, {dx + door_w, 0.19f, dd}, {dx, 0.19f, dd});
   b.quad(stone, {dx, 0.0f, 0.0f}, {dx + door_w, 0.0f, 0.0f}, {dx + door_w, 0.19f, 0.0f}, {dx, 0.19f, 0.0f});
   b.quad(joinery, {dx, 0.19f, dd}, {dx + door_w, 0.19f, dd}, {dx + door_w, fascia0, dd}, {dx, fascia0, dd});
-  b.picture(Mat::panes, glm::vec3(1.0f), pane_rect(8), {dx + 0.16f, 1.0f, dd + 0.01f}, {dx + door_w - 0.16f, 1.0f, dd + 0.01f},
-            {dx + door_w - 0.16f, 2.75f, dd + 0.01f}, {dx + 0.16f, 2.75f, dd + 0.01f});
-  if (f.awning) awning(b, l - 0.1f, r + 0.1f, fascia0 + 0.05f, 0.75f, 1.5f, f.accent * 2.2f + glm::vec3(0.02f), glm::vec3(0.42f, 0.39f, 0.33f));
+  b.picture(Mat::panes, glm::vec3(1.0f), pane_rect(8), {dx + 0.16f, 1.0f, dd + 0.01f},
+            {dx + door_w - 0.16f, 1.0f, dd + 0.01f}, {dx + door_w - 0.16f, 2.75f, dd + 0.01f},
+            {dx + 0.16f, 2.75f, dd + 0.01f});
+  if (f.awning)
+    awning(b, l - 0.1f, r + 0.1f, fascia0 + 0.05f, 0.75f, 1.5f, f.accent * 2.2f + glm::vec3(0.02f),
+           glm::vec3(0.42f, 0.39f, 0.33f));
 }
 
 void awning(Builder& b, float x0, float x1, float y_top, float drop, float reach, glm::vec3 stripe, glm::vec3 ground) {
@@ -99,13 +113,19 @@ void awning(Builder& b, float x0, float x1, float y_top, float drop, float reach
     const float zm = 0.5f * reach;
     const float ym = 0.5f * (y_top + y1) - 0.05f;
     const glm::vec3 up(0, 0.004f, 0);
-    b.quad(cloth, glm::vec3(a, ym, zm) + up, glm::vec3(c, ym, zm) + up, glm::vec3(c, y_top, 0.02f) + up, glm::vec3(a, y_top, 0.02f) + up);
-    b.quad(cloth, glm::vec3(a, y1, reach) + up, glm::vec3(c, y1, reach) + up, glm::vec3(c, ym, zm) + up, glm::vec3(a, ym, zm) + up);
+    b.quad(cloth, glm::vec3(a, ym, zm) + up, glm::vec3(c, ym, zm) + up, glm::vec3(c, y_top, 0.02f) + up,
+           glm::vec3(a, y_top, 0.02f) + up);
+    b.quad(cloth, glm::vec3(a, y1, reach) + up, glm::vec3(c, y1, reach) + up, glm::vec3(c, ym, zm) + up,
+           glm::vec3(a, ym, zm) + up);
     b.quad(under, {a, y_top, 0.02f}, {c, y_top, 0.02f}, {c, ym, zm}, {a, ym, zm});
     b.quad(under, {a, ym, zm}, {c, ym, zm}, {c, y1, reach}, {a, y1, reach});
     // Valance with a pointed scallop to each stripe, seen from both sides.
     const float m = 0.5f * (a + c);
-    const std::array<glm::vec3, 5> front{{{a, y1 - valance * 0.65f, reach}, {m, y1 - valance, reach}, {c, y1 - valance * 0.65f, reach}, {c, y1 + 0.004f, reach}, {a, y1 + 0.004f, reach}}};
+    const std::array<glm::vec3, 5> front{{{a, y1 - valance * 0.65f, reach},
+                                          {m, y1 - valance, reach},
+                                          {c, y1 - valance * 0.65f, reach},
+                                          {c, y1 + 0.004f, reach},
+                                          {a, y1 + 0.004f, reach}}};
     b.fan(cloth, front);
     const std::array<glm::vec3, 5> back{{front[4], front[3], front[2], front[1], front[0]}};
     std::array<glm::vec3, 5> inner = back;
@@ -114,7 +134,8 @@ void awning(Builder& b, float x0, float x1, float y_top, float drop, float reach
   }
   const Paint iron = plain(glm::vec3(0.05f), Finish::iron);
   b.cylinder(iron, {x0, y1 - 0.01f, reach - 0.02f}, {x1, y1 - 0.01f, reach - 0.02f}, 0.015f, 0.015f, 5);
-  for (float x : {x0 + 0.1f, x1 - 0.1f}) b.cylinder(iron, {x, y_top - drop - 0.25f, 0.03f}, {x, y1, reach - 0.02f}, 0.012f, 0.012f, 4);
+  for (float x : {x0 + 0.1f, x1 - 0.1f})
+    b.cylinder(iron, {x, y_top - drop - 0.25f, 0.03f}, {x, y1, reach - 0.02f}, 0.012f, 0.012f, 4);
 }
 
 }  // namespace petrichor::city

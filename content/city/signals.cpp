@@ -17,12 +17,17 @@ void signal_head(Builder b, bool red) {
     const float y = 0.17f + 0.29f * static_cast<float>(k);
     const bool on = (k == 2 && red) || (k == 0 && !red);
     const Paint lens = on ? glow(red ? Glow::signal_red : Glow::signal_green)
-                          : plain(k == 2 ? glm::vec3(0.05f, 0.004f, 0.003f) : k == 1 ? glm::vec3(0.05f, 0.03f, 0.002f) : glm::vec3(0.003f, 0.04f, 0.02f), Finish::gloss);
+                          : plain(k == 2   ? glm::vec3(0.05f, 0.004f, 0.003f)
+                                  : k == 1 ? glm::vec3(0.05f, 0.03f, 0.002f)
+                                           : glm::vec3(0.003f, 0.04f, 0.02f),
+                                  Finish::gloss);
     b.cylinder(lens, {0, y, 0.07f}, {0, y, 0.10f}, 0.105f, 0.07f, 12, false, true);
     for (int s = 0; s < 6; ++s) {  // visor: the upper half of a tube, seen from both sides
       const float t0 = 3.14159265f * static_cast<float>(s) / 6.0f;
       const float t1 = 3.14159265f * static_cast<float>(s + 1) / 6.0f;
-      const auto on_visor = [&](float t, float z) { return glm::vec3(0.125f * std::cos(t), y + 0.125f * std::sin(t), z); };
+      const auto on_visor = [&](float t, float z) {
+        return glm::vec3(0.125f * std::cos(t), y + 0.125f * std::sin(t), z);
+      };
       b.quad(black, on_visor(t0, 0.08f), on_visor(t0, 0.30f), on_visor(t1, 0.30f), on_visor(t1, 0.08f));
       b.quad(black, on_visor(t0, 0.30f), on_visor(t0, 0.08f), on_visor(t1, 0.08f), on_visor(t1, 0.30f));
     }
@@ -60,7 +65,10 @@ void add_signals(Scene& scene) {
     glm::vec3 facing;
     bool red;
   };
-  const std::array<Place, 4> places{{{{5.4f, 10.7f}, {0, 0, 1}, true}, {{-5.4f, -10.7f}, {0, 0, -1}, true}, {{-11.3f, 4.5f}, {-1, 0, 0}, false}, {{11.3f, -4.5f}, {1, 0, 0}, false}}};
+  const std::array<Place, 4> places{{{{5.4f, 10.7f}, {0, 0, 1}, true},
+                                     {{-5.4f, -10.7f}, {0, 0, -1}, true},
+                                     {{-11.3f, 4.5f}, {-1, 0, 0}, false},
+                                     {{11.3f, -4.5f}, {1, 0, 0}, false}}};
   int number = 0;
   for (const Place& p : places) {
     const std::string name = "traffic_light_" + std::to_string(number++);
@@ -68,7 +76,8 @@ void add_signals(Scene& scene) {
     add_node(scene, name, parent, p.red ? red : green, frame);
     const float y = p.red ? 3.05f : 2.47f;
     add_light(scene, name + "_light", parent, glm::vec3(frame * glm::vec4(0, y, 0.62f, 1)),
-              {p.red ? glm::vec3(1.0f, 0.04f, 0.02f) : glm::vec3(0.05f, 1.0f, 0.45f), p.red ? 34.0f : 26.0f, 16.0f, 0, 0, false, 0.1f});
+              {p.red ? glm::vec3(1.0f, 0.04f, 0.02f) : glm::vec3(0.05f, 1.0f, 0.45f), p.red ? 34.0f : 26.0f, 16.0f, 0,
+               0, false, 0.1f});
   }
 }
 
@@ -82,7 +91,9 @@ void add_wires(Scene& scene) {
   Builder b(mesh);
   for (float z : spans) {  // span wires from wall to wall
     b.tube(wire, catenary({-main_wall_m, high, z}, {main_wall_m, high + 0.2f, z}, 0.45f, 8), 0.010f, 3);
-    for (float x : {-main_wall_m, main_wall_m}) b.cylinder(plain(glm::vec3(0.04f), Finish::iron), {x, high, z}, {x - std::copysign(0.12f, x), high, z}, 0.05f, 0.02f, 6);
+    for (float x : {-main_wall_m, main_wall_m})
+      b.cylinder(plain(glm::vec3(0.04f), Finish::iron), {x, high, z}, {x - std::copysign(0.12f, x), high, z}, 0.05f,
+                 0.02f, 6);
     mark_drip(scene, parent, glm::translate(glm::mat4(1.0f), {-3.0f, high - 0.38f, z}), 6.0f, 0.02f, 1.0f);
   }
   for (std::size_t k = 0; k + 1 < spans.size(); ++k) {  // the trolley bus's two pairs
@@ -105,10 +116,14 @@ void add_wires(Scene& scene) {
     f.tube(wire, line, 0.008f, 3);
     for (std::size_t k = 1; k + 1 < line.size(); ++k) {
       f.cylinder(wire, line[k] - glm::vec3(0, 0.05f, 0), line[k], 0.018f, 0.014f, 4);
-      f.cylinder(glow(Glow::candle), line[k] - glm::vec3(0, 0.09f, 0), line[k] - glm::vec3(0, 0.045f, 0), 0.036f, 0.024f, 5);
-      f.cylinder(glow(Glow::candle), line[k] - glm::vec3(0, 0.125f, 0), line[k] - glm::vec3(0, 0.09f, 0), 0.008f, 0.036f, 5);
+      f.cylinder(glow(Glow::candle), line[k] - glm::vec3(0, 0.09f, 0), line[k] - glm::vec3(0, 0.045f, 0), 0.036f,
+                 0.024f, 5);
+      f.cylinder(glow(Glow::candle), line[k] - glm::vec3(0, 0.125f, 0), line[k] - glm::vec3(0, 0.09f, 0), 0.008f,
+                 0.036f, 5);
     }
-    if (number % 3 != 2) add_light(scene, "festoon_light_" + std::to_string(number), parent, line[7] - glm::vec3(0, 0.2f, 0), {{1.0f, 0.60f, 0.24f}, 60.0f, 15.0f, 0, 0, false, 0.6f});
+    if (number % 3 != 2)
+      add_light(scene, "festoon_light_" + std::to_string(number), parent, line[7] - glm::vec3(0, 0.2f, 0),
+                {{1.0f, 0.60f, 0.24f}, 60.0f, 15.0f, 0, 0, false, 0.6f});
     ++number;
   }
   add_mesh_node(scene, parent, std::move(bulbs));

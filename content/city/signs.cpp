@@ -15,10 +15,10 @@ constexpr int atlas_px = 1024;
 struct Board {
   const char* text;
   Font font;
-  TextBox place;        // pixels in the atlas
-  glm::vec3 ground;     // linear
+  TextBox place;     // pixels in the atlas
+  glm::vec3 ground;  // linear
   glm::vec3 letters;
-  float ground_shine;   // emission of the ground and of the letters, of full scale
+  float ground_shine;  // emission of the ground and of the letters, of full scale
   float letter_shine;
 };
 
@@ -50,7 +50,13 @@ const std::array<Board, static_cast<std::size_t>(Sign::count)> boards{{
     {"", Font::serif, {566, 600, 256, 256}, {0.6f, 0.55f, 0.42f}, cream, 0, 0},
     {"", Font::serif, {822, 600, 202, 202}, {0.09f, 0.05f, 0.02f}, gold, 0, 0},
     {"TAXI", Font::sans, {832, 552, 192, 48}, {0.8f, 0.42f, 0.05f}, {0.01f, 0.008f, 0.005f}, 0.35f, 0},
-    {"CINEMA · THE THIRD UMBRELLA · 8.15 · LAST WEEK", Font::condensed, {566, 856, 458, 72}, {0.8f, 0.78f, 0.7f}, {0.03f, 0.01f, 0.01f}, 0.6f, 0},
+    {"CINEMA · THE THIRD UMBRELLA · 8.15 · LAST WEEK",
+     Font::condensed,
+     {566, 856, 458, 72},
+     {0.8f, 0.78f, 0.7f},
+     {0.03f, 0.01f, 0.01f},
+     0.6f,
+     0},
 }};
 
 using Shade = std::pair<glm::vec3, glm::vec3>;  // base colour, emission
@@ -74,7 +80,8 @@ Shade concert(glm::vec2 p) {
     }
   }
   const float rain = p.x * 40.0f + p.y * 6.0f;
-  if (unit(mix(3, static_cast<std::uint32_t>(rain), static_cast<std::uint32_t>(p.y * 22.0f + 7.0f * std::floor(rain)))) > 0.86f &&
+  if (unit(mix(3, static_cast<std::uint32_t>(rain),
+               static_cast<std::uint32_t>(p.y * 22.0f + 7.0f * std::floor(rain)))) > 0.86f &&
       rain - std::floor(rain) < 0.16f) {
     c += glm::vec3(0.10f, 0.13f, 0.2f);
   }
@@ -122,8 +129,10 @@ Shade bear(glm::vec2 p) {
   const float rim = glm::length(p - 0.5f);
   if (rim > 0.44f && rim < 0.47f) c = gold;
   const glm::vec3 fur(0.50f, 0.27f, 0.09f);
-  if (disc(0.5f, 0.66f, 0.19f) || disc(0.5f, 0.38f, 0.155f) || disc(0.37f, 0.26f, 0.065f) || disc(0.63f, 0.26f, 0.065f) ||
-      disc(0.31f, 0.6f, 0.075f) || disc(0.69f, 0.6f, 0.075f) || disc(0.38f, 0.82f, 0.08f) || disc(0.62f, 0.82f, 0.08f)) c = fur;
+  if (disc(0.5f, 0.66f, 0.19f) || disc(0.5f, 0.38f, 0.155f) || disc(0.37f, 0.26f, 0.065f) ||
+      disc(0.63f, 0.26f, 0.065f) || disc(0.31f, 0.6f, 0.075f) || disc(0.69f, 0.6f, 0.075f) ||
+      disc(0.38f, 0.82f, 0.08f) || disc(0.62f, 0.82f, 0.08f))
+    c = fur;
   if (disc(0.5f, 0.44f, 0.06f) || disc(0.5f, 0.68f, 0.11f)) c = {0.72f, 0.5f, 0.24f};
   if (disc(0.44f, 0.35f, 0.02f) || disc(0.56f, 0.35f, 0.02f) || disc(0.5f, 0.42f, 0.024f)) c = glm::vec3(0.01f);
   return {c, c * 0.06f};
@@ -172,7 +181,8 @@ Atlas sign_atlas() {
   }
   const auto poster_text = [&](Sign sign, float y, float height, Font font, const char* text, glm::vec3 colour) {
     const TextBox& at = boards[static_cast<std::size_t>(sign)].place;
-    const TextBox line{at.x + 12, at.y + static_cast<int>(y * at.height), at.width - 24, static_cast<int>(height * at.height)};
+    const TextBox line{at.x + 12, at.y + static_cast<int>(y * at.height), at.width - 24,
+                       static_cast<int>(height * at.height)};
     draw_text(atlas.base_colour, font, text, line, colour, line.height);
     draw_text(atlas.emission, font, text, line, colour * 0.25f, line.height);
   };

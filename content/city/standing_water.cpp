@@ -20,20 +20,26 @@ struct Hollow {
 // Settled places: a few chosen for the pictures, the rest by chance.
 const std::vector<Hollow>& hollows() {
   static const std::vector<Hollow> list = [] {
-    std::vector<Hollow> out{
-        {{2.6f, -1.2f}, {1.9f, 1.3f}, 0.030f},  {{-1.9f, 3.6f}, {1.5f, 2.0f}, 0.026f}, {{3.9f, -9.5f}, {0.9f, 2.6f}, 0.032f},
-        {{-2.2f, 12.0f}, {0.9f, 2.4f}, 0.024f}, {{0.8f, 8.6f}, {1.0f, 1.5f}, 0.018f},  {{3.6f, 18.5f}, {1.2f, 2.8f}, 0.028f},
-        {{-0.9f, -8.0f}, {1.1f, 2.2f}, 0.022f}, {{2.2f, -17.0f}, {0.9f, 3.1f}, 0.024f}, {{14.0f, 0.9f}, {2.1f, 1.0f}, 0.026f},
-        {{-13.0f, -1.1f}, {2.4f, 0.9f}, 0.024f}, {{7.2f, 1.6f}, {1.4f, 0.9f}, 0.022f},  {{0.5f, 17.2f}, {1.5f, 1.9f}, 0.026f}};
+    std::vector<Hollow> out{{{2.6f, -1.2f}, {1.9f, 1.3f}, 0.030f},  {{-1.9f, 3.6f}, {1.5f, 2.0f}, 0.026f},
+                            {{3.9f, -9.5f}, {0.9f, 2.6f}, 0.032f},  {{-2.2f, 12.0f}, {0.9f, 2.4f}, 0.024f},
+                            {{0.8f, 8.6f}, {1.0f, 1.5f}, 0.018f},   {{3.6f, 18.5f}, {1.2f, 2.8f}, 0.028f},
+                            {{-0.9f, -8.0f}, {1.1f, 2.2f}, 0.022f}, {{2.2f, -17.0f}, {0.9f, 3.1f}, 0.024f},
+                            {{14.0f, 0.9f}, {2.1f, 1.0f}, 0.026f},  {{-13.0f, -1.1f}, {2.4f, 0.9f}, 0.024f},
+                            {{7.2f, 1.6f}, {1.4f, 0.9f}, 0.022f},   {{0.5f, 17.2f}, {1.5f, 1.9f}, 0.026f}};
     Dice dice{4242};
     for (int k = 0; k < 34; ++k) {
       const float z = dice.between(-58.0f, 58.0f);
-      const Hollow hollow{{dice.between(-4.6f, 4.6f), z}, {dice.between(0.5f, 1.3f), dice.between(0.7f, 2.4f)}, dice.between(0.010f, 0.026f)};
-      if (std::abs(hollow.centre_m.x) > 2.5f || z < 18.0f || z > 26.0f) out.push_back(hollow);  // not underfoot of view_crossing
+      const Hollow hollow{{dice.between(-4.6f, 4.6f), z},
+                          {dice.between(0.5f, 1.3f), dice.between(0.7f, 2.4f)},
+                          dice.between(0.010f, 0.026f)};
+      if (std::abs(hollow.centre_m.x) > 2.5f || z < 18.0f || z > 26.0f)
+        out.push_back(hollow);  // not underfoot of view_crossing
     }
     for (int k = 0; k < 24; ++k) {
       const float x = dice.between(8.0f, 58.0f) * (dice.chance(0.5f) ? 1.0f : -1.0f);
-      out.push_back({{x, dice.between(-3.6f, 3.6f)}, {dice.between(0.6f, 1.8f), dice.between(0.4f, 1.1f)}, dice.between(0.010f, 0.024f)});
+      out.push_back({{x, dice.between(-3.6f, 3.6f)},
+                     {dice.between(0.6f, 1.8f), dice.between(0.4f, 1.1f)},
+                     dice.between(0.010f, 0.024f)});
     }
     return out;
   }();
@@ -49,7 +55,8 @@ float value_noise(float x, float z, float cell_m, std::uint32_t seed) {
   const float fx = std::floor(x / cell_m);
   const float fz = std::floor(z / cell_m);
   const auto at = [&](float i, float j) {
-    return unit(mix(seed, static_cast<std::uint32_t>(static_cast<int>(i) + 4096), static_cast<std::uint32_t>(static_cast<int>(j) + 4096)));
+    return unit(mix(seed, static_cast<std::uint32_t>(static_cast<int>(i) + 4096),
+                    static_cast<std::uint32_t>(static_cast<int>(j) + 4096)));
   };
   const auto ease = [](float t) { return t * t * (3.0f - 2.0f * t); };
   const float u = ease(x / cell_m - fx);
@@ -95,7 +102,9 @@ StandingWater flood_streets() {
   StandingWater w;
   const int n = static_cast<int>(2.0f * street_end_m / water_cell_m);
   w.size = n;
-  const auto at = [n](int i, int j) { return static_cast<std::size_t>(j) * static_cast<std::size_t>(n) + static_cast<std::size_t>(i); };
+  const auto at = [n](int i, int j) {
+    return static_cast<std::size_t>(j) * static_cast<std::size_t>(n) + static_cast<std::size_t>(i);
+  };
   const auto centre = [](int i) { return -street_end_m + (static_cast<float>(i) + 0.5f) * water_cell_m; };
   const float nowhere = std::numeric_limits<float>::infinity();
   w.ground_m.assign(static_cast<std::size_t>(n) * static_cast<std::size_t>(n), nowhere);
@@ -120,7 +129,8 @@ StandingWater flood_streets() {
     open.emplace(w.ground_m[k], k);
   };
   for (const glm::vec2& g : w.gullies) {
-    outlet(static_cast<int>((g.x + street_end_m) / water_cell_m), static_cast<int>((g.y + street_end_m) / water_cell_m));
+    outlet(static_cast<int>((g.x + street_end_m) / water_cell_m),
+           static_cast<int>((g.y + street_end_m) / water_cell_m));
   }
   for (int k = 0; k < n; ++k) {
     outlet(k, 0);
@@ -176,14 +186,16 @@ StandingWater flood_streets() {
     for (std::size_t k : cells) {
       w.level_m[k] = std::max(w.ground_m[k], basin.level_m);
       if (!stands(k)) continue;
-      const glm::vec2 c(centre(static_cast<int>(k % static_cast<std::size_t>(n))), centre(static_cast<int>(k / static_cast<std::size_t>(n))));
+      const glm::vec2 c(centre(static_cast<int>(k % static_cast<std::size_t>(n))),
+                        centre(static_cast<int>(k / static_cast<std::size_t>(n))));
       basin.minimum_m = glm::min(basin.minimum_m, c - 0.5f * water_cell_m);
       basin.maximum_m = glm::max(basin.maximum_m, c + 0.5f * water_cell_m);
       basin.area_m2 += water_cell_m * water_cell_m;
     }
     if (basin.area_m2 > 0.3f) w.basins.push_back(basin);
   }
-  std::stable_sort(w.basins.begin(), w.basins.end(), [](const Basin& a, const Basin& b) { return a.area_m2 > b.area_m2; });
+  std::stable_sort(w.basins.begin(), w.basins.end(),
+                   [](const Basin& a, const Basin& b) { return a.area_m2 > b.area_m2; });
   return w;
 }
 
@@ -197,7 +209,8 @@ float StandingWater::depth_at(float x, float z) const {
     for (int a = 0; a < 2; ++a) {
       const int ci = std::clamp(i + a, 0, size - 1);
       const int cj = std::clamp(j + b, 0, size - 1);
-      const std::size_t k = static_cast<std::size_t>(cj) * static_cast<std::size_t>(size) + static_cast<std::size_t>(ci);
+      const std::size_t k =
+          static_cast<std::size_t>(cj) * static_cast<std::size_t>(size) + static_cast<std::size_t>(ci);
       if (!std::isfinite(ground_m[k])) continue;
       const float wx = a ? fx - static_cast<float>(i) : 1.0f - (fx - static_cast<float>(i));
       const float wz = b ? fz - static_cast<float>(j) : 1.0f - (fz - static_cast<float>(j));

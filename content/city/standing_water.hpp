@@ -17,10 +17,10 @@ struct Basin {
 };
 
 struct StandingWater {
-  int size = 0;                  // cells along x and along z, from -street_end_m
-  std::vector<float> ground_m;   // at cell centres; infinite off the carriageway
-  std::vector<float> level_m;    // of the water surface; the ground where dry
-  std::vector<Basin> basins;     // largest first
+  int size = 0;                 // cells along x and along z, from -street_end_m
+  std::vector<float> ground_m;  // at cell centres; infinite off the carriageway
+  std::vector<float> level_m;   // of the water surface; the ground where dry
+  std::vector<Basin> basins;    // largest first
   std::vector<glm::vec2> gullies;
 
   float depth_at(float x, float z) const;  // bilinear

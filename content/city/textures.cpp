@@ -18,8 +18,12 @@ float bump(float x, float centre, float width) {
   return std::exp(-d * d);
 }
 
-float blend(float a, float b, float t) { return a + (b - a) * t; }
-glm::vec3 blend(glm::vec3 a, glm::vec3 b, float t) { return a + (b - a) * t; }
+float blend(float a, float b, float t) {
+  return a + (b - a) * t;
+}
+glm::vec3 blend(glm::vec3 a, glm::vec3 b, float t) {
+  return a + (b - a) * t;
+}
 
 // One stone of a running bond: which stone, where in it, how far from the joint.
 struct Bond {
@@ -34,13 +38,15 @@ Bond running_bond(glm::vec2 p, glm::vec2 metres, int columns, int rows, float jo
   const float row_f = p.y * static_cast<float>(rows);
   const int row = static_cast<int>(std::floor(row_f));
   const int wrapped_row = ((row % rows) + rows) % rows;
-  const float shift = random_shift ? unit(mix(seed, static_cast<std::uint32_t>(wrapped_row))) : 0.5f * (wrapped_row & 1);
+  const float shift =
+      random_shift ? unit(mix(seed, static_cast<std::uint32_t>(wrapped_row))) : 0.5f * (wrapped_row & 1);
   const float col_f = p.x * static_cast<float>(columns) + shift;
   const int col = static_cast<int>(std::floor(col_f));
   const auto edge_at = [&](int c) {
     const int w = ((c % columns) + columns) % columns;
     return static_cast<float>(c) +
-           jitter * (unit(mix(seed + 7, static_cast<std::uint32_t>(wrapped_row), static_cast<std::uint32_t>(w))) - 0.5f);
+           jitter *
+               (unit(mix(seed + 7, static_cast<std::uint32_t>(wrapped_row), static_cast<std::uint32_t>(w))) - 0.5f);
   };
   int stone = col;
   if (col_f < edge_at(col)) stone = col - 1;
@@ -96,8 +102,8 @@ Maps asphalt_maps(bool wet) {
     const float patch = smooth(0.02f, -0.02f, patch_edge);
     const float tar = bump(patch_edge, 0.0f, 0.035f);
     const float crack_field = std::abs(periodic_fbm(u + 0.03f * fine, v, {3, 6}, 4, 31));
-    const float crack = smooth(0.016f, 0.004f, crack_field) * smooth(-0.05f, 0.2f, periodic_noise({u * 3, v * 5}, {3, 5}, 41)) *
-                        (1.0f - patch);
+    const float crack = smooth(0.016f, 0.004f, crack_field) *
+                        smooth(-0.05f, 0.2f, periodic_noise({u * 3, v * 5}, {3, 5}, 41)) * (1.0f - patch);
     const float longitudinal = bump(across, 3.02f + 0.02f * large, 0.012f);  // the joint between two paver passes
     Texel t;
     const float stone = smooth(0.62f, 0.2f, grain.x);
@@ -107,13 +113,14 @@ Maps asphalt_maps(bool wet) {
     albedo *= (1.0f - 0.45f * oil) * (1.0f - 0.7f * crack) * (1.0f - 0.6f * longitudinal);
     albedo = blend(albedo, 0.012f, 0.85f * tar);
     t.albedo = std::clamp(albedo, 0.008f, 0.12f) * glm::vec3(1.0f, 0.985f, 0.96f) * (wet ? 0.72f : 1.0f);
-    const float film = smooth(-0.3f, 0.55f, large + 0.55f * tracks - 0.2f);  // where the water film closes over the stones
+    const float film =
+        smooth(-0.3f, 0.55f, large + 0.55f * tracks - 0.2f);  // where the water film closes over the stones
     t.roughness = wet ? blend(0.46f, 0.20f, film) - 0.06f * oil - 0.12f * tar + 0.05f * fine
                       : 0.86f - 0.10f * tracks - 0.2f * oil - 0.3f * tar + 0.04f * fine;
     t.roughness = std::clamp(t.roughness, 0.12f, 0.95f);
     const float relief = wet ? blend(1.0f, 0.42f, film) : 1.0f;
-    t.height_m = relief * (0.0022f * stone * (0.4f + 0.6f * grain.y) + 0.0012f * fine) - 0.004f * crack - 0.003f * longitudinal +
-                 0.002f * tar + 0.004f * large;
+    t.height_m = relief * (0.0022f * stone * (0.4f + 0.6f * grain.y) + 0.0012f * fine) - 0.004f * crack -
+                 0.003f * longitudinal + 0.002f * tar + 0.004f * large;
     return t;
   });
 }
@@ -150,7 +157,8 @@ Maps slabs_maps(bool wet) {
     const Bond b = running_bond({u + 0.0006f * fine, v}, metres, 5, 8, 0.009f, 0.3f, 91, true);
     const float value = unit(b.id);
     const float face = smooth(-0.003f, 0.006f, b.edge_m);
-    const float gum = smooth(0.28f, 0.2f, grains(u, v, {24, 24}, 19).x) * (grains(u, v, {24, 24}, 19).y > 0.75f ? 1.0f : 0.0f);
+    const float gum =
+        smooth(0.28f, 0.2f, grains(u, v, {24, 24}, 19).x) * (grains(u, v, {24, 24}, 19).y > 0.75f ? 1.0f : 0.0f);
     Texel t;
     t.albedo = blend(glm::vec3(0.17f, 0.16f, 0.145f), glm::vec3(0.13f, 0.128f, 0.125f), unit(mix(b.id, 2)));
     t.albedo *= 0.72f + 0.45f * value + 0.25f * fine + 0.3f * large;
@@ -158,8 +166,8 @@ Maps slabs_maps(bool wet) {
     const float film = smooth(-0.25f, 0.5f, large + 0.5f * (unit(mix(b.id, 8)) - 0.5f));
     t.roughness = wet ? blend(blend(0.42f, 0.2f, film), 0.3f, 1.0f - face) + 0.05f * fine : 0.78f + 0.1f * fine;
     const float tilt = (b.fx - 0.5f) * (unit(mix(b.id, 5)) - 0.5f) + (b.fy - 0.5f) * (unit(mix(b.id, 6)) - 0.5f);
-    t.height_m = 0.005f * face + 0.003f * (value - 0.5f) * face + 0.006f * tilt * face +
-                 (wet ? 0.0005f : 0.001f) * fine * face;
+    t.height_m =
+        0.005f * face + 0.003f * (value - 0.5f) * face + 0.006f * tilt * face + (wet ? 0.0005f : 0.001f) * fine * face;
     return t;
   });
 }
@@ -208,7 +216,8 @@ Maps ashlar_maps(bool wet) {
     const float face = smooth(-0.006f, 0.016f, b.edge_m);
     const float streaks = periodic_fbm(u, v, {20, 2}, 3, 48);
     Texel t;
-    t.albedo = glm::vec3(0.46f, 0.43f, 0.375f) * (0.78f + 0.3f * unit(b.id) + 0.15f * fine + 0.2f * large + 0.12f * streaks);
+    t.albedo =
+        glm::vec3(0.46f, 0.43f, 0.375f) * (0.78f + 0.3f * unit(b.id) + 0.15f * fine + 0.2f * large + 0.12f * streaks);
     t.albedo = blend(glm::vec3(0.16f, 0.145f, 0.12f), t.albedo, face) * (wet ? 0.8f : 1.0f);
     t.roughness = (wet ? 0.52f : 0.8f) + 0.1f * fine;
     t.height_m = 0.016f * face + 0.0015f * fine;
@@ -228,7 +237,8 @@ Maps tile_maps(bool wet) {
     const float fy = row_f - static_cast<float>(row);  // 0 at the upper edge of the course, 1 at its lip
     const float col_f = u * columns + 0.5f * (row & 1);
     const float fx = col_f - std::floor(col_f);
-    const std::uint32_t id = mix(131, static_cast<std::uint32_t>(row), static_cast<std::uint32_t>(static_cast<int>(col_f) % columns));
+    const std::uint32_t id =
+        mix(131, static_cast<std::uint32_t>(row), static_cast<std::uint32_t>(static_cast<int>(col_f) % columns));
     const float lip = smooth(1.0f, 0.9f, fy + 0.10f * (2.0f * fx - 1.0f) * (2.0f * fx - 1.0f));
     const float gap = smooth(0.0f, 0.05f, std::min(fx, 1.0f - fx));
     Texel t;
@@ -246,7 +256,8 @@ Maps marking_maps(bool wet) {
     const float fine = periodic_fbm(u, v, {60, 60}, 3, 67);
     const float wear = smooth(0.18f, 0.5f, periodic_fbm(u, v, {4, 4}, 5, 66) + 0.25f * fine);
     Texel t;
-    t.albedo = blend(glm::vec3(0.50f, 0.49f, 0.45f) * (1.0f + 0.15f * fine), glm::vec3(0.05f), 0.9f * wear) * (wet ? 0.8f : 1.0f);
+    t.albedo = blend(glm::vec3(0.50f, 0.49f, 0.45f) * (1.0f + 0.15f * fine), glm::vec3(0.05f), 0.9f * wear) *
+               (wet ? 0.8f : 1.0f);
     t.roughness = wet ? blend(0.22f, 0.4f, wear) : 0.6f;
     t.height_m = 0.001f * fine;
     return t;

@@ -7,7 +7,7 @@
 
 namespace petrichor::city {
 
-Maps asphalt_maps(bool wet);    // one lane of 5 m, u from the middle of the road to the kerb, v along it
+Maps asphalt_maps(bool wet);  // one lane of 5 m, u from the middle of the road to the kerb, v along it
 Maps setts_maps(bool wet);
 Maps slabs_maps(bool wet);
 Maps brick_maps(bool wet);

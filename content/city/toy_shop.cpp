@@ -44,8 +44,10 @@ void glazing(const Front& front, Builder& b, float x0, float x1, int panes, bool
     const bool is_door = door_in_middle && k == panes / 2;
     const float low = is_door ? floor_m + 0.35f : riser_m;
     const float deep = is_door ? -0.55f : z;
-    b.quad({Mat::glass, glm::vec3(1.0f), {}}, {a, low, deep}, {c, low, deep}, {c, glass_top_m, deep}, {a, glass_top_m, deep});
-    mark_pane(front.scene, front.parent, front.frame * glm::translate(glm::mat4(1.0f), {0.5f * (a + c), 0.5f * (low + glass_top_m), deep}),
+    b.quad({Mat::glass, glm::vec3(1.0f), {}}, {a, low, deep}, {c, low, deep}, {c, glass_top_m, deep},
+           {a, glass_top_m, deep});
+    mark_pane(front.scene, front.parent,
+              front.frame * glm::translate(glm::mat4(1.0f), {0.5f * (a + c), 0.5f * (low + glass_top_m), deep}),
               {c - a, glass_top_m - low});
     if (is_door) {
       b.box(wood, {a, floor_m, deep - 0.03f}, {c, low, deep + 0.03f}, face_no_bottom);
@@ -54,11 +56,16 @@ void glazing(const Front& front, Builder& b, float x0, float x1, int panes, bool
       b.box(wood, {a, 2.38f, deep - 0.03f}, {c, 2.5f, deep + 0.03f}, face_all);
       b.cylinder(gold, {c - 0.2f, 1.1f, deep + 0.08f}, {c - 0.2f, 1.6f, deep + 0.08f}, 0.014f, 0.014f, 6);
       for (float s : {a, c}) {  // glass cheeks of the porch
-        if (s == a) b.quad({Mat::glass, glm::vec3(1.0f), {}}, {s, riser_m, z}, {s, riser_m, deep}, {s, glass_top_m, deep}, {s, glass_top_m, z});
-        else b.quad({Mat::glass, glm::vec3(1.0f), {}}, {s, riser_m, deep}, {s, riser_m, z}, {s, glass_top_m, z}, {s, glass_top_m, deep});
+        if (s == a)
+          b.quad({Mat::glass, glm::vec3(1.0f), {}}, {s, riser_m, z}, {s, riser_m, deep}, {s, glass_top_m, deep},
+                 {s, glass_top_m, z});
+        else
+          b.quad({Mat::glass, glm::vec3(1.0f), {}}, {s, riser_m, deep}, {s, riser_m, z}, {s, glass_top_m, z},
+                 {s, glass_top_m, deep});
         b.box(wood, {s - 0.03f, 0.1f, deep}, {s + 0.03f, riser_m, z}, face_sides | face_top);
       }
-      b.box(plain(glm::vec3(0.3f), Finish::wet_stone), {a, 0.0f, deep}, {c, floor_m - 0.08f, 0.25f}, face_no_back & ~face_bottom);
+      b.box(plain(glm::vec3(0.3f), Finish::wet_stone), {a, 0.0f, deep}, {c, floor_m - 0.08f, 0.25f},
+            face_no_back & ~face_bottom);
     } else {
       b.box(wood, {a, 0.1f, -0.2f}, {c, riser_m, 0.03f}, face_front | face_top);
       b.box(wood, {a + 0.14f, 0.24f, 0.03f}, {c - 0.14f, riser_m - 0.1f, 0.05f}, face_no_back);
@@ -67,13 +74,19 @@ void glazing(const Front& front, Builder& b, float x0, float x1, int panes, bool
   }
   for (int k = 0; k <= panes; ++k) {
     const float x = x0 + (x1 - x0) * static_cast<float>(k) / static_cast<float>(panes);
-    b.box(bronze, {x - 0.025f, riser_m, z - 0.04f}, {x + 0.025f, glass_top_m, z + 0.04f}, face_all & ~(face_top | face_bottom));
+    b.box(bronze, {x - 0.025f, riser_m, z - 0.04f}, {x + 0.025f, glass_top_m, z + 0.04f},
+          face_all & ~(face_top | face_bottom));
   }
   b.box(bronze, {x0, 2.5f, z - 0.03f}, {x1, 2.56f, z + 0.03f}, face_all & ~face_sides);
   // Fascia with a gilt line and a small cornice.
   b.box(wood, {x0, glass_top_m, -0.25f}, {x1, fascia_top_m, 0.10f}, face_front | face_bottom | face_back);
-  for (float y : {glass_top_m + 0.05f, fascia_top_m - 0.08f}) b.box(gold, {x0, y, 0.10f}, {x1, y + 0.02f, 0.112f}, face_front | face_top | face_bottom);
-  const std::array<glm::vec2, 5> cornice{{{0.10f, fascia_top_m - 0.05f}, {0.18f, fascia_top_m}, {0.30f, fascia_top_m + 0.06f}, {0.32f, fascia_top_m + 0.14f}, {0.0f, fascia_top_m + 0.18f}}};
+  for (float y : {glass_top_m + 0.05f, fascia_top_m - 0.08f})
+    b.box(gold, {x0, y, 0.10f}, {x1, y + 0.02f, 0.112f}, face_front | face_top | face_bottom);
+  const std::array<glm::vec2, 5> cornice{{{0.10f, fascia_top_m - 0.05f},
+                                          {0.18f, fascia_top_m},
+                                          {0.30f, fascia_top_m + 0.06f},
+                                          {0.32f, fascia_top_m + 0.14f},
+                                          {0.0f, fascia_top_m + 0.18f}}};
   b.moulding(wood, cornice, x0, x1);
 }
 
@@ -92,12 +105,14 @@ void board(Builder& b, float x0, float x1) {
   const float cx = 0.5f * (x0 + x1);
   const float cy = 0.5f * (glass_top_m + fascia_top_m) - 0.01f;
   const float hh = half_w / sign_aspect(Sign::toys);
-  b.picture(Mat::signs, glm::vec3(1.0f), sign_rect(Sign::toys), {cx - half_w, cy - hh, 0.115f}, {cx + half_w, cy - hh, 0.115f}, {cx + half_w, cy + hh, 0.115f}, {cx - half_w, cy + hh, 0.115f});
+  b.picture(Mat::signs, glm::vec3(1.0f), sign_rect(Sign::toys), {cx - half_w, cy - hh, 0.115f},
+            {cx + half_w, cy - hh, 0.115f}, {cx + half_w, cy + hh, 0.115f}, {cx - half_w, cy + hh, 0.115f});
 }
 
 void shelves(Builder b, float width, Dice& dice) {  // in a wall frame
   const Paint wood = plain({0.26f, 0.13f, 0.055f}, Finish::paint);
-  b.quad(plain({0.42f, 0.33f, 0.19f}, Finish::matte), {0, floor_m, 0}, {width, floor_m, 0}, {width, ceiling_m, 0}, {0, ceiling_m, 0});
+  b.quad(plain({0.42f, 0.33f, 0.19f}, Finish::matte), {0, floor_m, 0}, {width, floor_m, 0}, {width, ceiling_m, 0},
+         {0, ceiling_m, 0});
   for (float y : {0.55f, 1.05f, 1.55f, 2.05f, 2.55f}) {
     b.box(wood, {0.1f, y, 0.0f}, {width - 0.1f, y + 0.035f, 0.36f}, face_front | face_top | face_bottom);
     for (float x = 0.35f; x < width - 0.3f;) {
@@ -106,8 +121,10 @@ void shelves(Builder b, float width, Dice& dice) {  // in a wall frame
       x += size * dice.between(1.15f, 1.5f);
     }
   }
-  for (float x = 0.1f; x < width; x += (width - 0.2f) / 5.0f) b.box(wood, {x - 0.025f, floor_m, 0}, {x + 0.025f, 2.7f, 0.37f}, face_front | face_sides);
-  b.box(glow(Glow::shop), {0.15f, 2.95f, 0.0f}, {width - 0.15f, 2.99f, 0.05f}, face_front | face_bottom);  // a hidden strip over the shelves
+  for (float x = 0.1f; x < width; x += (width - 0.2f) / 5.0f)
+    b.box(wood, {x - 0.025f, floor_m, 0}, {x + 0.025f, 2.7f, 0.37f}, face_front | face_sides);
+  b.box(glow(Glow::shop), {0.15f, 2.95f, 0.0f}, {width - 0.15f, 2.99f, 0.05f},
+        face_front | face_bottom);  // a hidden strip over the shelves
 }
 
 void room(Scene& scene, int parent) {
@@ -118,7 +135,11 @@ void room(Scene& scene, int parent) {
   const float x0 = main_wall_m + 0.1f;
   const float z0 = -lane_wall_m - 0.1f;
   const float cut = corner_cut_m;
-  const std::array<glm::vec3, 5> plan{{{x0, floor_m, back_z_m}, {x0, floor_m, z0 - cut}, {x0 + cut, floor_m, z0}, {back_x_m, floor_m, z0}, {back_x_m, floor_m, back_z_m}}};
+  const std::array<glm::vec3, 5> plan{{{x0, floor_m, back_z_m},
+                                       {x0, floor_m, z0 - cut},
+                                       {x0 + cut, floor_m, z0},
+                                       {back_x_m, floor_m, z0},
+                                       {back_x_m, floor_m, back_z_m}}};
   b.fan(plain({0.24f, 0.12f, 0.055f}, Finish::gloss), plan);
   std::array<glm::vec3, 5> above{plan[4], plan[3], plan[2], plan[1], plan[0]};
   for (glm::vec3& p : above) p.y = ceiling_m;
@@ -130,7 +151,8 @@ void room(Scene& scene, int parent) {
   b.box(plain(gilt, Finish::brass), {14.4f, 1.25f, -12.7f}, {14.85f, 1.6f, -12.3f}, face_no_bottom);
   for (glm::vec2 t : {glm::vec2(11.6f, -11.0f), glm::vec2(13.9f, -9.3f)}) {
     Builder table = b.moved({t.x, floor_m, t.y});
-    table.cylinder(plain({0.26f, 0.12f, 0.05f}, Finish::gloss), {0, 0.7f, 0}, {0, 0.76f, 0}, 0.75f, 0.75f, 16, true, true);
+    table.cylinder(plain({0.26f, 0.12f, 0.05f}, Finish::gloss), {0, 0.7f, 0}, {0, 0.76f, 0}, 0.75f, 0.75f, 16, true,
+                   true);
     table.cylinder(plain({0.26f, 0.12f, 0.05f}, Finish::gloss), {0, 0, 0}, {0, 0.7f, 0}, 0.3f, 0.12f, 10);
     for (int k = 0; k < 5; ++k) {
       const float a = 1.2566f * static_cast<float>(k);
@@ -153,7 +175,8 @@ void room(Scene& scene, int parent) {
   b.box(stage, {x0, floor_m, -14.9f}, {x0 + 1.9f, riser_m, -10.0f}, face_right | face_top | face_front | face_back);
   b.box(stage, {11.6f, floor_m, z0 - 1.9f}, {16.6f, riser_m, z0}, face_back | face_top | face_sides);
   // Hanging things: lamps, stars, a balloon.
-  for (glm::vec3 p : {glm::vec3(10.9f, 2.75f, -9.3f), glm::vec3(14.3f, 2.75f, -8.6f), glm::vec3(10.2f, 2.75f, -12.8f), glm::vec3(14.3f, 2.75f, -12.4f)}) {
+  for (glm::vec3 p : {glm::vec3(10.9f, 2.75f, -9.3f), glm::vec3(14.3f, 2.75f, -8.6f), glm::vec3(10.2f, 2.75f, -12.8f),
+                      glm::vec3(14.3f, 2.75f, -12.4f)}) {
     b.cylinder(plain(glm::vec3(0.02f), Finish::iron), p, {p.x, ceiling_m, p.z}, 0.01f, 0.01f, 4);
     sphere(b, glow(Glow::candle), p, glm::vec3(0.15f), 10, 6);
   }
@@ -200,7 +223,9 @@ void add_toy_shop(Scene& scene) {
     style.joinery = {0.5f, 0.47f, 0.4f};
     Dice dice{91};
     const float w = x1 - x0;
-    wall_with_openings(part, stone, w, 0.0f, wall_top_m, {{0.30f * w - 0.65f, 0.30f * w + 0.65f, 0.1f, 2.8f}, {0.75f * w - 0.55f, 0.75f * w + 0.55f, 1.15f, 3.0f}});
+    wall_with_openings(
+        part, stone, w, 0.0f, wall_top_m,
+        {{0.30f * w - 0.65f, 0.30f * w + 0.65f, 0.1f, 2.8f}, {0.75f * w - 0.55f, 0.75f * w + 0.55f, 1.15f, 3.0f}});
     door(part, style, {0.02f, 0.07f, 0.06f}, 0.30f * w, 1.3f, 2.7f, true);
     window(part, style, 0.75f * w, 1.15f, 1.1f, 1.85f, Head::hood, false, dice);
   };
@@ -209,8 +234,10 @@ void add_toy_shop(Scene& scene) {
   cut.quad(stone, {0, fascia_top_m, 0}, {cut_width, fascia_top_m, 0}, {cut_width, wall_top_m, 0}, {0, wall_top_m, 0});
   awning(main_side, 4.55f, 9.8f, glass_top_m + 0.03f, 0.62f, 1.35f, {0.42f, 0.020f, 0.025f}, {0.52f, 0.47f, 0.38f});
   awning(lane, 0.2f, 5.55f, glass_top_m + 0.03f, 0.62f, 1.35f, {0.42f, 0.020f, 0.025f}, {0.52f, 0.47f, 0.38f});
-  mark_drip(scene, parent, main_frame * glm::translate(glm::mat4(1.0f), {4.55f, glass_top_m - 0.83f, 1.35f}), 5.25f, 1.4f, 1.5f);
-  mark_drip(scene, parent, lane_frame * glm::translate(glm::mat4(1.0f), {0.2f, glass_top_m - 0.83f, 1.35f}), 5.35f, 1.4f, 1.5f);
+  mark_drip(scene, parent, main_frame * glm::translate(glm::mat4(1.0f), {4.55f, glass_top_m - 0.83f, 1.35f}), 5.25f,
+            1.4f, 1.5f);
+  mark_drip(scene, parent, lane_frame * glm::translate(glm::mat4(1.0f), {0.2f, glass_top_m - 0.83f, 1.35f}), 5.35f,
+            1.4f, 1.5f);
 
   // TOY SHOP in tubes over the door, ringed in blue.
   Builder tubes = cut.moved({0, 0, 0.12f});
@@ -239,8 +266,10 @@ void add_toy_shop(Scene& scene) {
   for (float z : {0.35f, 0.95f}) hanging.cylinder(iron, {0, 5.38f, z}, {0, 5.56f, z}, 0.008f, 0.008f, 4);
   const float y0 = 4.62f, y1 = 5.38f, za = 0.27f, zb = 1.03f;
   hanging.box(plain(lacquer, Finish::gloss), {-0.025f, y0, za}, {0.025f, y1, zb});
-  hanging.picture(Mat::signs, glm::vec3(1.0f), sign_rect(Sign::hanging_bear), {-0.027f, y0, za}, {-0.027f, y0, zb}, {-0.027f, y1, zb}, {-0.027f, y1, za});
-  hanging.picture(Mat::signs, glm::vec3(1.0f), sign_rect(Sign::hanging_bear), {0.027f, y0, zb}, {0.027f, y0, za}, {0.027f, y1, za}, {0.027f, y1, zb});
+  hanging.picture(Mat::signs, glm::vec3(1.0f), sign_rect(Sign::hanging_bear), {-0.027f, y0, za}, {-0.027f, y0, zb},
+                  {-0.027f, y1, zb}, {-0.027f, y1, za});
+  hanging.picture(Mat::signs, glm::vec3(1.0f), sign_rect(Sign::hanging_bear), {0.027f, y0, zb}, {0.027f, y0, za},
+                  {0.027f, y1, za}, {0.027f, y1, zb});
   add_mesh_node(scene, parent, std::move(mesh));
 
   const glm::vec3 warm(1.0f, 0.70f, 0.38f);
@@ -249,8 +278,10 @@ void add_toy_shop(Scene& scene) {
   add_light(scene, "toy_shop_lamp_2", parent, {10.2f, 2.5f, -12.8f}, {warm, 150.0f, 16.0f, 0, 0, false, 0.15f});
   add_light(scene, "toy_shop_lamp_3", parent, {14.3f, 2.5f, -12.4f}, {warm, 120.0f, 12.0f, 0, 0, false, 0.15f});
   const auto before_cut = [&](float x, float y, float z) { return glm::vec3(cut_frame * glm::vec4(x, y, z, 1)); };
-  add_light(scene, "toy_shop_neon_left", parent, before_cut(1.2f, 3.5f, 0.6f), {{1.0f, 0.09f, 0.05f}, 60.0f, 14.0f, 0, 0, false, 0.4f});
-  add_light(scene, "toy_shop_neon_right", parent, before_cut(3.0f, 3.5f, 0.6f), {{1.0f, 0.10f, 0.12f}, 60.0f, 14.0f, 0, 0, false, 0.4f});
+  add_light(scene, "toy_shop_neon_left", parent, before_cut(1.2f, 3.5f, 0.6f),
+            {{1.0f, 0.09f, 0.05f}, 60.0f, 14.0f, 0, 0, false, 0.4f});
+  add_light(scene, "toy_shop_neon_right", parent, before_cut(3.0f, 3.5f, 0.6f),
+            {{1.0f, 0.10f, 0.12f}, 60.0f, 14.0f, 0, 0, false, 0.4f});
 }
 
 }  // namespace petrichor::city

@@ -9,14 +9,16 @@
 namespace petrichor::city {
 namespace {
 
-void head_lights(Scene& scene, int parent, const std::string& name, const glm::mat4& frame, const CarShape& shape, bool shadow) {
+void head_lights(Scene& scene, int parent, const std::string& name, const glm::mat4& frame, const CarShape& shape,
+                 bool shadow) {
   const auto at = [&](glm::vec3 p) { return glm::vec3(frame * glm::vec4(p, 1.0f)); };
   const glm::vec3 beam = glm::normalize(glm::mat3(frame) * glm::vec3(0.03f, -0.11f, 1.0f));
   const float front = 0.5f * shape.length_m;
   for (float x : {-0.52f, 0.52f}) {
     add_light(scene, name + (x < 0 ? "_head_right" : "_head_left"), parent, at({x, 0.58f, front + 0.08f}),
               {{1.0f, 0.88f, 0.68f}, 1100.0f, 32.0f, 5.0f, 20.0f, shadow && x < 0, 0.08f}, beam);
-    add_light(scene, name + (x < 0 ? "_tail_right" : "_tail_left"), parent, at({x, 0.60f, -front - 0.12f}), {{1.0f, 0.035f, 0.02f}, 7.0f, 9.0f, 0, 0, false, 0.07f});
+    add_light(scene, name + (x < 0 ? "_tail_right" : "_tail_left"), parent, at({x, 0.60f, -front - 0.12f}),
+              {{1.0f, 0.035f, 0.02f}, 7.0f, 9.0f, 0, 0, false, 0.07f});
   }
 }
 
@@ -51,18 +53,21 @@ void add_vehicles(Scene& scene) {
     CarShape shape;
     int mesh;
   };
-  const auto kind = [&](const std::string& name, const CarShape& shape, glm::vec3 colour, bool on = false, CarSign sign = CarSign::none) {
+  const auto kind = [&](const std::string& name, const CarShape& shape, glm::vec3 colour, bool on = false,
+                        CarSign sign = CarSign::none) {
     return Kind{shape, scene.add_mesh(car_mesh(name, shape, colour, on, sign))};
   };
-  const std::array<Kind, 6> kinds{{kind("saloon_green", saloon, {0.02f, 0.07f, 0.05f}), kind("saloon_cream", saloon, {0.42f, 0.37f, 0.27f}),
-                                   kind("small_red", small, {0.26f, 0.015f, 0.015f}), kind("small_blue", small, {0.05f, 0.13f, 0.22f}),
-                                   kind("van_grey", van, {0.12f, 0.13f, 0.14f}), kind("saloon_plum", saloon, {0.055f, 0.012f, 0.022f})}};
+  const std::array<Kind, 6> kinds{
+      {kind("saloon_green", saloon, {0.02f, 0.07f, 0.05f}), kind("saloon_cream", saloon, {0.42f, 0.37f, 0.27f}),
+       kind("small_red", small, {0.26f, 0.015f, 0.015f}), kind("small_blue", small, {0.05f, 0.13f, 0.22f}),
+       kind("van_grey", van, {0.12f, 0.13f, 0.14f}), kind("saloon_plum", saloon, {0.055f, 0.012f, 0.022f})}};
   const Kind taxi_on = kind("taxi_lit", saloon, {0.012f, 0.012f, 0.014f}, true, CarSign::taxi);
   const Kind small_on = kind("small_lit", small, {0.30f, 0.20f, 0.05f}, true);
 
   const auto place = [&](const Kind& k, const std::string& name, glm::vec2 p, float heading) {
     const float y = carriageway_height_m(p.x, p.y);
-    const glm::mat4 frame = glm::rotate(glm::translate(glm::mat4(1.0f), {p.x, y - 0.01f, p.y}), heading, glm::vec3(0, 1, 0));
+    const glm::mat4 frame =
+        glm::rotate(glm::translate(glm::mat4(1.0f), {p.x, y - 0.01f, p.y}), heading, glm::vec3(0, 1, 0));
     add_node(scene, name, parent, k.mesh, frame);
     return frame;
   };
@@ -73,16 +78,27 @@ void add_vehicles(Scene& scene) {
     glm::vec2 at;
     float heading;
   };
-  const std::array<Parked, 12> parked{{{2, {3.98f, 28.2f}, north + 0.02f}, {0, {3.95f, 34.4f}, north}, {4, {3.92f, 46.3f}, north - 0.02f}, {1, {3.95f, -20.4f}, north + 0.015f},
-                                       {3, {4.0f, -32.6f}, north}, {5, {-3.95f, 17.6f}, south}, {3, {-3.98f, 29.6f}, south - 0.03f}, {1, {-3.95f, 41.2f}, south},
-                                       {4, {-3.92f, -20.6f}, south + 0.02f}, {2, {-4.0f, -27.0f}, south}, {0, {-3.95f, -44.8f}, south}, {5, {3.95f, -50.4f}, north}}};
+  const std::array<Parked, 12> parked{{{2, {3.98f, 28.2f}, north + 0.02f},
+                                       {0, {3.95f, 34.4f}, north},
+                                       {4, {3.92f, 46.3f}, north - 0.02f},
+                                       {1, {3.95f, -20.4f}, north + 0.015f},
+                                       {3, {4.0f, -32.6f}, north},
+                                       {5, {-3.95f, 17.6f}, south},
+                                       {3, {-3.98f, 29.6f}, south - 0.03f},
+                                       {1, {-3.95f, 41.2f}, south},
+                                       {4, {-3.92f, -20.6f}, south + 0.02f},
+                                       {2, {-4.0f, -27.0f}, south},
+                                       {0, {-3.95f, -44.8f}, south},
+                                       {5, {3.95f, -50.4f}, north}}};
   for (std::size_t k = 0; k < parked.size(); ++k) {
-    place(kinds[static_cast<std::size_t>(parked[k].kind)], "parked_car_" + std::to_string(k), parked[k].at, parked[k].heading);
+    place(kinds[static_cast<std::size_t>(parked[k].kind)], "parked_car_" + std::to_string(k), parked[k].at,
+          parked[k].heading);
   }
   place(kinds[2], "lane_car_0", {-24.0f, 3.05f}, 1.5707963f);
   place(kinds[0], "lane_car_1", {33.0f, -3.05f}, -1.5707963f);
   // Two with their lights on: one waits at the crossing, tail towards the south; one comes down from the north.
-  head_lights(scene, parent, "waiting_taxi", place(taxi_on, "waiting_taxi", {1.75f, 13.9f}, north + 0.01f), saloon, false);
+  head_lights(scene, parent, "waiting_taxi", place(taxi_on, "waiting_taxi", {1.75f, 13.9f}, north + 0.01f), saloon,
+              false);
   head_lights(scene, parent, "coming_car", place(small_on, "coming_car", {-1.8f, -19.0f}, south - 0.02f), small, true);
 }
 

@@ -18,10 +18,13 @@ void blade(Builder b, float y0, float y1, float reach, glm::vec3 colour, Face&& 
   const Paint board = plain(colour, Finish::paint);
   const Paint iron = plain(glm::vec3(0.03f), Finish::iron);
   b.box(board, {-0.09f, y0, 0.25f}, {0.09f, y1, 0.25f + reach});
-  for (float y : {y0 + 0.25f, y1 - 0.25f}) b.box(iron, {-0.03f, y - 0.03f, 0.0f}, {0.03f, y + 0.03f, 0.25f}, face_no_back);
+  for (float y : {y0 + 0.25f, y1 - 0.25f})
+    b.box(iron, {-0.03f, y - 0.03f, 0.0f}, {0.03f, y + 0.03f, 0.25f}, face_no_back);
   // Faces look along local +x and -x; on each, x runs across the board from its left as one reads it.
-  face(b.at(glm::translate(glm::mat4(1.0f), {0.09f, 0.0f, 0.25f + reach}) * glm::rotate(glm::mat4(1.0f), 1.5707963f, glm::vec3(0, 1, 0))));
-  face(b.at(glm::translate(glm::mat4(1.0f), {-0.09f, 0.0f, 0.25f}) * glm::rotate(glm::mat4(1.0f), -1.5707963f, glm::vec3(0, 1, 0))));
+  face(b.at(glm::translate(glm::mat4(1.0f), {0.09f, 0.0f, 0.25f + reach}) *
+            glm::rotate(glm::mat4(1.0f), 1.5707963f, glm::vec3(0, 1, 0))));
+  face(b.at(glm::translate(glm::mat4(1.0f), {-0.09f, 0.0f, 0.25f}) *
+            glm::rotate(glm::mat4(1.0f), -1.5707963f, glm::vec3(0, 1, 0))));
 }
 
 std::vector<glm::vec3> frame_line(float x0, float x1, float y0, float y1, float corner) {
@@ -45,7 +48,8 @@ void add_wall_signs(Scene& scene) {
   Mesh mesh;
   mesh.name = "neon_signs";
   Builder world(mesh);
-  const auto light = [&](const std::string& name, const glm::mat4& frame, glm::vec3 p, glm::vec3 colour, float candela, float range) {
+  const auto light = [&](const std::string& name, const glm::mat4& frame, glm::vec3 p, glm::vec3 colour, float candela,
+                         float range) {
     add_light(scene, name, parent, glm::vec3(frame * glm::vec4(p, 1.0f)), {colour, candela, range, 0, 0, false, 0.5f});
   };
 
@@ -55,7 +59,9 @@ void add_wall_signs(Scene& scene) {
     neon_column(b, Glow::neon_pink, "HOTEL", 0.525f, 11.0f, 0.82f, 1.10f, 0.026f);
     neon_line(b, Glow::neon_blue, frame_line(0.07f, 0.98f, 5.47f, 11.23f, 0.14f), 0.016f, true);
   });
-  for (float s : {-1.0f, 1.0f}) light(s < 0 ? "hotel_neon_north" : "hotel_neon_south", hotel, {s * 0.9f, 7.6f, 0.9f}, {1.0f, 0.16f, 0.46f}, 120.0f, 20.0f);
+  for (float s : {-1.0f, 1.0f})
+    light(s < 0 ? "hotel_neon_north" : "hotel_neon_south", hotel, {s * 0.9f, 7.6f, 0.9f}, {1.0f, 0.16f, 0.46f}, 120.0f,
+          20.0f);
 
   // Café Luna: a moon and letters on the cut corner over the door.
   const glm::mat4 cafe = wall_frame({-main_wall_m - corner_cut_m, 0, -lane_wall_m}, glm::normalize(glm::vec3(1, 0, 1)));
@@ -76,8 +82,18 @@ void add_wall_signs(Scene& scene) {
       const float w = r * 0.38f;
       const float y = 5.1f;
       const float x = 0.55f;
-      const std::array<glm::vec3, 12> line{{{x - w, y - r, 0.05f}, {x + w, y - r, 0.05f}, {x + w, y - w, 0.05f}, {x + r, y - w, 0.05f}, {x + r, y + w, 0.05f}, {x + w, y + w, 0.05f},
-                                            {x + w, y + r, 0.05f}, {x - w, y + r, 0.05f}, {x - w, y + w, 0.05f}, {x - r, y + w, 0.05f}, {x - r, y - w, 0.05f}, {x - w, y - w, 0.05f}}};
+      const std::array<glm::vec3, 12> line{{{x - w, y - r, 0.05f},
+                                            {x + w, y - r, 0.05f},
+                                            {x + w, y - w, 0.05f},
+                                            {x + r, y - w, 0.05f},
+                                            {x + r, y + w, 0.05f},
+                                            {x + w, y + w, 0.05f},
+                                            {x + w, y + r, 0.05f},
+                                            {x - w, y + r, 0.05f},
+                                            {x - w, y + w, 0.05f},
+                                            {x - r, y + w, 0.05f},
+                                            {x - r, y - w, 0.05f},
+                                            {x - w, y - w, 0.05f}}};
       neon_line(b, Glow::neon_green, line, 0.016f, true);
     }
   });
@@ -118,10 +134,14 @@ void add_wall_signs(Scene& scene) {
     for (int sz : {-1, 1}) {
       const auto fx = static_cast<float>(sx);
       const auto fz = static_cast<float>(sz);
-      Builder a = world.at(wall_frame({fx * main_wall_m, 3.95f, fz * (lane_wall_m + corner_cut_m + 9.4f)}, {-fx, 0, 0}));
-      a.picture(Mat::signs, glm::vec3(1.0f), sign_rect(Sign::street_main), {-0.45f, -0.09f, 0.03f}, {0.45f, -0.09f, 0.03f}, {0.45f, 0.09f, 0.03f}, {-0.45f, 0.09f, 0.03f});
-      Builder c = world.at(wall_frame({fx * (main_wall_m + corner_cut_m + 9.4f), 3.95f, fz * lane_wall_m}, {0, 0, -fz}));
-      c.picture(Mat::signs, glm::vec3(1.0f), sign_rect(Sign::street_cross), {-0.45f, -0.09f, 0.03f}, {0.45f, -0.09f, 0.03f}, {0.45f, 0.09f, 0.03f}, {-0.45f, 0.09f, 0.03f});
+      Builder a =
+          world.at(wall_frame({fx * main_wall_m, 3.95f, fz * (lane_wall_m + corner_cut_m + 9.4f)}, {-fx, 0, 0}));
+      a.picture(Mat::signs, glm::vec3(1.0f), sign_rect(Sign::street_main), {-0.45f, -0.09f, 0.03f},
+                {0.45f, -0.09f, 0.03f}, {0.45f, 0.09f, 0.03f}, {-0.45f, 0.09f, 0.03f});
+      Builder c =
+          world.at(wall_frame({fx * (main_wall_m + corner_cut_m + 9.4f), 3.95f, fz * lane_wall_m}, {0, 0, -fz}));
+      c.picture(Mat::signs, glm::vec3(1.0f), sign_rect(Sign::street_cross), {-0.45f, -0.09f, 0.03f},
+                {0.45f, -0.09f, 0.03f}, {0.45f, 0.09f, 0.03f}, {-0.45f, 0.09f, 0.03f});
     }
   }
   add_mesh_node(scene, parent, std::move(mesh));

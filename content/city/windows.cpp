@@ -22,7 +22,8 @@ void surround(Builder& b, const Paint& trim, float w, float h) {
 void head_piece(Builder& b, const Paint& trim, Head head, float w, float h) {
   const float half = 0.5f * w + 0.2f;
   switch (head) {
-    case Head::none: return;
+    case Head::none:
+      return;
     case Head::lintel: {
       b.box(trim, {-half, h + 0.002f, 0.0f}, {half, h + 0.26f, 0.05f}, face_no_back);
       // Keystone, wider at the top.
@@ -33,7 +34,8 @@ void head_piece(Builder& b, const Paint& trim, Head head, float w, float h) {
       return;
     }
     case Head::hood: {
-      const std::array<glm::vec2, 5> profile{{{0.0f, h + 0.18f}, {0.06f, h + 0.20f}, {0.16f, h + 0.27f}, {0.17f, h + 0.33f}, {0.0f, h + 0.37f}}};
+      const std::array<glm::vec2, 5> profile{
+          {{0.0f, h + 0.18f}, {0.06f, h + 0.20f}, {0.16f, h + 0.27f}, {0.17f, h + 0.33f}, {0.0f, h + 0.37f}}};
       b.moulding(trim, profile, -half - 0.05f, half + 0.05f);
       for (float s : {-1.0f, 1.0f}) {  // consoles
         const float x = s * (half - 0.06f);
@@ -42,7 +44,8 @@ void head_piece(Builder& b, const Paint& trim, Head head, float w, float h) {
       return;
     }
     case Head::pediment: {
-      const std::array<glm::vec2, 4> profile{{{0.0f, h + 0.18f}, {0.14f, h + 0.22f}, {0.15f, h + 0.29f}, {0.0f, h + 0.30f}}};
+      const std::array<glm::vec2, 4> profile{
+          {{0.0f, h + 0.18f}, {0.14f, h + 0.22f}, {0.15f, h + 0.29f}, {0.0f, h + 0.30f}}};
       b.moulding(trim, profile, -half - 0.06f, half + 0.06f);
       const float rise = 0.20f * w + 0.12f;
       const float y = h + 0.29f;
@@ -74,7 +77,9 @@ void head_piece(Builder& b, const Paint& trim, Head head, float w, float h) {
         const float t1 = -spread + 2.0f * spread * static_cast<float>(k + 1) / stones;
         const float thick = k == stones / 2 ? 0.34f : 0.25f;
         const float z = k == stones / 2 ? 0.09f : 0.05f + 0.012f * static_cast<float>(k & 1);
-        const auto on = [&](float r, float t) { return glm::vec3(centre.x + r * std::sin(t), centre.y + r * std::cos(t), z); };
+        const auto on = [&](float r, float t) {
+          return glm::vec3(centre.x + r * std::sin(t), centre.y + r * std::cos(t), z);
+        };
         const glm::vec3 a = on(radius, t0), c = on(radius, t1), d = on(radius + thick, t1), e = on(radius + thick, t0);
         b.quad(trim, a, c, d, e);
         const glm::vec3 in(0, 0, -z);
@@ -88,7 +93,8 @@ void head_piece(Builder& b, const Paint& trim, Head head, float w, float h) {
 
 }  // namespace
 
-void window(Builder& parent, const Style& style, float x, float y, float w, float h, Head head, bool shutters, Dice& dice) {
+void window(Builder& parent, const Style& style, float x, float y, float w, float h, Head head, bool shutters,
+            Dice& dice) {
   Builder b = parent.moved({x, y, 0.0f});
   const float depth = 0.17f;
   const float l = -0.5f * w;
@@ -112,7 +118,8 @@ void window(Builder& parent, const Style& style, float x, float y, float w, floa
   b.box(frame, {l + f, h - f, zp}, {r - f, h, zf}, face_front | (face_bottom & flanks));
   const float transom = h > 1.5f ? 0.68f * h : 0.5f * h;
   b.box(frame, {-0.03f, f, zp}, {0.03f, h - f, zf}, face_front | (face_sides & flanks));
-  b.box(frame, {l + f, transom - 0.025f, zp}, {r - f, transom + 0.025f, zf - 0.008f}, face_front | (face_bottom & flanks));
+  b.box(frame, {l + f, transom - 0.025f, zp}, {r - f, transom + 0.025f, zf - 0.008f},
+        face_front | (face_bottom & flanks));
   const bool lit = dice.chance(style.lit);
   const int tile = lit ? dice.below(lit_panes) : lit_panes + dice.below(dark_panes);
   UvRect rect = pane_rect(tile);
@@ -172,7 +179,8 @@ void balcony(Builder& parent, const Style& style, float x, float y, float width)
     const float c = -xr + 2.0f * xr * static_cast<float>(k) / static_cast<float>(bars);
     const bool post = k == 0 || k == bars;
     const float t = post ? 0.022f : 0.009f;
-    b.box(iron, {c - t, 0.0f, zr - t}, {c + t, rail, zr + t}, post ? face_front | face_sides | face_back : face_front | face_sides);
+    b.box(iron, {c - t, 0.0f, zr - t}, {c + t, rail, zr + t},
+          post ? face_front | face_sides | face_back : face_front | face_sides);
   }
   for (float s : {-1.0f, 1.0f}) {
     for (int k = 1; k < 4; ++k) {

@@ -34,13 +34,15 @@ struct Writer {
   }
 
   int accessor(int view_index, int component, std::size_t count, const char* type) {
-    root["accessors"].push_back({{"bufferView", view_index}, {"componentType", component}, {"count", count}, {"type", type}});
+    root["accessors"].push_back(
+        {{"bufferView", view_index}, {"componentType", component}, {"count", count}, {"type", type}});
     return static_cast<int>(root["accessors"].size()) - 1;
   }
 
   template <class T>
   int floats(const std::vector<T>& values, const char* type) {
-    return accessor(view(values.data(), values.size() * sizeof(T), target_vertices), component_float, values.size(), type);
+    return accessor(view(values.data(), values.size() * sizeof(T), target_vertices), component_float, values.size(),
+                    type);
   }
 };
 
@@ -119,9 +121,11 @@ json write_primitive(Writer& w, Mat mat, const Primitive& p, int material) {
   json out{{"attributes", attributes}, {"material", material}};
   if (p.vertices.size() < 65535) {
     std::vector<std::uint16_t> small(p.indices.begin(), p.indices.end());
-    out["indices"] = w.accessor(w.view(small.data(), small.size() * 2, target_indices), component_ushort, small.size(), "SCALAR");
+    out["indices"] =
+        w.accessor(w.view(small.data(), small.size() * 2, target_indices), component_ushort, small.size(), "SCALAR");
   } else {
-    out["indices"] = w.accessor(w.view(p.indices.data(), p.indices.size() * 4, target_indices), component_uint, p.indices.size(), "SCALAR");
+    out["indices"] = w.accessor(w.view(p.indices.data(), p.indices.size() * 4, target_indices), component_uint,
+                                p.indices.size(), "SCALAR");
   }
   return out;
 }
@@ -129,7 +133,9 @@ json write_primitive(Writer& w, Mat mat, const Primitive& p, int material) {
 void write_lights(json& root, const Scene& scene) {
   json lights = json::array();
   for (const Light& l : scene.lights) {
-    json j{{"name", l.name}, {"type", l.spot ? "spot" : "point"}, {"intensity", l.intensity_cd},
+    json j{{"name", l.name},
+           {"type", l.spot ? "spot" : "point"},
+           {"intensity", l.intensity_cd},
            {"color", {l.colour.x, l.colour.y, l.colour.z}}};
     if (l.range_m > 0.0f) j["range"] = l.range_m;
     if (l.spot) j["spot"] = {{"innerConeAngle", l.inner_cone_rad}, {"outerConeAngle", l.outer_cone_rad}};
@@ -144,7 +150,8 @@ void write_nodes(json& root, const Scene& scene) {
   for (std::size_t i = 0; i < scene.nodes.size(); ++i) {
     const Node& n = scene.nodes[i];
     json j{{"name", n.name}};
-    if (n.translation_m != glm::vec3(0.0f)) j["translation"] = {n.translation_m.x, n.translation_m.y, n.translation_m.z};
+    if (n.translation_m != glm::vec3(0.0f))
+      j["translation"] = {n.translation_m.x, n.translation_m.y, n.translation_m.z};
     if (n.rotation != glm::quat(1, 0, 0, 0)) {
       const glm::quat q = glm::normalize(n.rotation);
       j["rotation"] = {q.x, q.y, q.z, q.w};
@@ -180,13 +187,16 @@ Result<std::vector<std::uint8_t>> glb_bytes(const Scene& scene, const WriteOptio
   const MaterialSet materials = make_materials(scene, options.wet, options.textures);
   for (const std::string& m : materials.json) w.root["materials"].push_back(json::parse(m));
   for (const EncodedImage& image : materials.images) {
-    if (image.bytes.empty()) return failure("petrichor_city: OpenImageIO could not encode " + image.name + " as " + image.mime_type);
+    if (image.bytes.empty())
+      return failure("petrichor_city: OpenImageIO could not encode " + image.name + " as " + image.mime_type);
     const std::size_t index = w.root["images"].size();
-    w.root["images"].push_back(
-        {{"name", image.name}, {"mimeType", image.mime_type}, {"bufferView", w.view(image.bytes.data(), image.bytes.size(), 0)}});
+    w.root["images"].push_back({{"name", image.name},
+                                {"mimeType", image.mime_type},
+                                {"bufferView", w.view(image.bytes.data(), image.bytes.size(), 0)}});
     w.root["textures"].push_back({{"source", index}, {"sampler", 0}});
   }
-  if (!materials.images.empty()) w.root["samplers"] = {{{"magFilter", 9729}, {"minFilter", 9987}, {"wrapS", 10497}, {"wrapT", 10497}}};
+  if (!materials.images.empty())
+    w.root["samplers"] = {{{"magFilter", 9729}, {"minFilter", 9987}, {"wrapS", 10497}, {"wrapT", 10497}}};
   for (const Mesh& mesh : scene.meshes) {
     json primitives = json::array();
     for (const auto& [mat, primitive] : mesh.primitives) {
@@ -196,7 +206,8 @@ Result<std::vector<std::uint8_t>> glb_bytes(const Scene& scene, const WriteOptio
     w.root["meshes"].push_back({{"name", mesh.name}, {"primitives", primitives}});
   }
   for (const Camera& c : scene.cameras) {
-    w.root["cameras"].push_back({{"name", c.name}, {"type", "perspective"}, {"perspective", {{"yfov", c.vertical_fov_rad}, {"znear", 0.05}}}});
+    w.root["cameras"].push_back(
+        {{"name", c.name}, {"type", "perspective"}, {"perspective", {{"yfov", c.vertical_fov_rad}, {"znear", 0.05}}}});
   }
   write_lights(w.root, scene);
   write_nodes(w.root, scene);
@@ -234,7 +245,8 @@ Result<void> write_file(const std::filesystem::path& path, const std::vector<std
   file.close();
   std::error_code error;
   if (file) std::filesystem::rename(part, path, error);
-  if (!file || error) return failure("petrichor_city: cannot write " + path.string() + ": check the folder and the free space");
+  if (!file || error)
+    return failure("petrichor_city: cannot write " + path.string() + ": check the folder and the free space");
   return {};
 }
 

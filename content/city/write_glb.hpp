@@ -9,8 +9,8 @@
 namespace petrichor::city {
 
 struct WriteOptions {
-  bool wet = true;         // streets and walls under a film of rain
-  bool textures = true;    // off only for quick looks at the geometry
+  bool wet = true;       // streets and walls under a film of rain
+  bool textures = true;  // off only for quick looks at the geometry
 };
 
 Result<std::vector<std::uint8_t>> glb_bytes(const Scene&, const WriteOptions&);

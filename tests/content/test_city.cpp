@@ -152,7 +152,8 @@ TEST(City, HasItsPlaces) {
   }
   std::set<std::string> names;
   for (const Node& node : town().nodes) names.insert(node.name);
-  for (const char* name : {"toy_shop_front", "toy_shop_room", "bus_shelter", "overhead_wires", "neon_signs", "walker_start", "church"}) {
+  for (const char* name :
+       {"toy_shop_front", "toy_shop_room", "bus_shelter", "overhead_wires", "neon_signs", "walker_start", "church"}) {
     EXPECT_TRUE(names.contains(name)) << name;
   }
   int cars = 0;
@@ -206,7 +207,9 @@ TEST(City, WaterStandsWhereTheGroundHoldsIt) {
   const int n = water.size;
   for (int j = 1; j + 1 < n; ++j) {
     for (int i = 1; i + 1 < n; ++i) {
-      const auto at = [n](int a, int b) { return static_cast<std::size_t>(b) * static_cast<std::size_t>(n) + static_cast<std::size_t>(a); };
+      const auto at = [n](int a, int b) {
+        return static_cast<std::size_t>(b) * static_cast<std::size_t>(n) + static_cast<std::size_t>(a);
+      };
       const std::size_t k = at(i, j);
       if (!std::isfinite(water.ground_m[k]) || water.level_m[k] - water.ground_m[k] <= 0.003f) continue;
       int lower = 0;
