@@ -27,7 +27,7 @@ std::vector<SystemEntry<SystemContext>> all_systems() {
       {.name = "rainfall", .phase = Phase::simulate, .reads = {"emitter", "wind", "time"}, .writes = {"rain_motion"}, .needs = {"emitter"},
        .run = [](SystemContext& c) { simulate_rainfall(c.registry, c.time_s); }},
 
-      {.name = "propagate_transforms", .phase = Phase::propagate, .reads = {"transform"}, .writes = {"world_transform"},
+      {.name = "propagate_transforms", .phase = Phase::propagate, .reads = {"transform"}, .writes = {"world_transform", "parent"},
        .run = [](SystemContext& c) { propagate_transforms(c.registry); }},
       {.name = "track_cameras", .phase = Phase::propagate, .reads = {"camera", "world_transform"}, .writes = {"camera_motion"},
        .needs = {"camera"}, .after = {"propagate_transforms"}, .run = [](SystemContext& c) { track_cameras(c.registry); }},

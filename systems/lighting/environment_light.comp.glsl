@@ -1,5 +1,6 @@
 #version 450 core
 // Lights one captured view of the surroundings: six small G-buffers side by side become radiance.
+#define BRIGHTEST_CAPTURED_CD_M2 30.0
 #include "systems/lighting/brdf.h"
 #include "systems/lighting/lighting_shared.h"
 #include "systems/lighting/shadow.glsl"
@@ -39,7 +40,9 @@ void main() {
     irradiance += light.intensity_radius.rgb * (strength * max(dot(surface.normal, l), 0.0));
   }
   // Metals shine with what they mirror; their base colour stands for it here.
-  vec3 lit = surface.albedo * irradiance / PI + surface.emissive;
+  // Lamp glass and neon shine through their punctual lights already: what is captured of them is no brighter than a
+  // lit window, or each lamp would light the street twice.
+  vec3 lit = surface.albedo * irradiance / PI + min(surface.emissive, vec3(BRIGHTEST_CAPTURED_CD_M2));
   vec3 result = depth > 0.0 ? lit : sky_radiance(normalize(axial));
   imageStore(radiance, texel, vec4(min(result, vec3(6e4)), 1.0));
 }
