@@ -38,12 +38,17 @@ void add_lamps(Frame& frame) {
 
 Result<std::vector<BenchRow>> bench_rain(int drops, int width, int height, int frames, bool software_gl) {
   Emitter emitter;
-  emitter.rain_mm_per_hour = 50.0f;
   emitter.maximum_drops = drops;
   emitter.drawn_distance_m = 500.0f;
   Wind wind;
   wind.velocity_mps = {1.0f, 0.0f, 0.0f};
   const WindMotion motion = start_rain_motion(emitter, wind);
+  const Frame view = stage_frame(width, height);
+  emitter.rain_mm_per_hour = 10.0f;
+  while (emitter.rain_mm_per_hour < 50.0f &&
+         make_frame_rain(emitter, motion, view.camera, width, height, 0.0).drawn_distance_m > 30.0f) {
+    emitter.rain_mm_per_hour += 1.0f;
+  }
   const std::string n = std::to_string(drops), size = std::to_string(width) + "x" + std::to_string(height);
 
   std::vector<BenchRow> rows;
@@ -53,6 +58,7 @@ Result<std::vector<BenchRow>> bench_rain(int drops, int width, int height, int f
       set.wall_cd_m2 = glm::vec3(0.01f);
       set.wall_distance_m = 200.0f;
       set.wall_hides = set.map = true;
+      set.fog = false;
     }
     auto stage = RainStage::make(software_gl, set);
     if (!stage) return tl::unexpected(stage.error());

@@ -9,8 +9,8 @@
 namespace petrichor {
 namespace {
 
-// The fade is the last fifth of the drawn distance.
-constexpr double fade_share = 0.8;
+// The fade is the last tenth of the drawn distance.
+constexpr double fade_share = 0.9;
 
 double frustum_solid_angle(const FrameCamera& camera, int width, int height) {
   const double a = std::tan(0.5 * camera.vertical_fov_rad), b = a * width / std::max(height, 1);

@@ -19,8 +19,13 @@ PassOffer backdrop_offer(const StageSet& set) {
   offer.shaders = {{"backdrop", {{"systems/rainfall/stage_backdrop.comp.glsl"}, {}}}};
   const auto optics = std::make_shared<Buffer>();
   offer.execute = [set, optics](PassContext& context) {
-    if (set.wall_distance_m == 0.0f) {  // darkness
-      glClearTexImage(context.texture("colour").id, 0, GL_RGBA, GL_FLOAT, nullptr);
+    if (set.wall_hides && context.has("depth")) {
+      const float depth = context.frame.camera.near_m / set.wall_distance_m;
+      glClearTexImage(context.texture("depth").id, 0, GL_DEPTH_COMPONENT, GL_FLOAT, &depth);
+    }
+    if (set.wall_distance_m == 0.0f || !set.fog) {
+      const glm::vec4 wall(set.wall_cd_m2, 1.0f);
+      glClearTexImage(context.texture("colour").id, 0, GL_RGBA, GL_FLOAT, &wall.x);
       return;
     }
     if (optics->bytes == 0) upload(*optics, std::span<const float>(make_drop_phase()));
@@ -32,10 +37,6 @@ PassOffer backdrop_offer(const StageSet& set) {
     program.set("around", context.frame.sky.horizon_cd_m2);  // drops under an even sky show nothing else
     context.bind_image(0, "colour", GL_WRITE_ONLY);
     program.dispatch(context.width, context.height);
-    if (set.wall_hides && context.has("depth")) {
-      const float depth = context.frame.camera.near_m / set.wall_distance_m;
-      glClearTexImage(context.texture("depth").id, 0, GL_DEPTH_COMPONENT, GL_FLOAT, &depth);
-    }
   };
   return offer;
 }

@@ -16,6 +16,7 @@ namespace petrichor {
 struct StageSet {
   glm::vec3 wall_cd_m2{0.0f};
   float wall_distance_m = 0.0f;  // 0: no wall and no fog, an empty scene
+  bool fog = true;               // the wall is seen through what stands in for undrawn rain
   bool wall_hides = false;       // the wall is in the depth buffer
   bool map = false;              // there is an occlusion map, of
   float roof_m = 0.0f;           // a roof this high above the camera over all places with x < 0, relative; 0: no roof
