@@ -111,12 +111,12 @@ Mesh car_mesh(const std::string& name, const CarShape& shape, glm::vec3 colour, 
   const Paint glass = plain(glm::vec3(0.006f, 0.008f, 0.009f), Finish::gloss);
   const Paint chrome = plain(glm::vec3(0.55f), Finish::chrome);
   const Paint black = plain(glm::vec3(0.01f), Finish::rubber);
-  b.surface(paint, 12, 18, [&](float u, float v) { return body.shell(1.0f - u, v); });
-  b.surface(paint, 10, 11, [&](float u, float v) { return body.cabin(1.0f - u, v); });
+  b.surface(paint, 12, 18, [&](float u, float v) { return body.shell(u, v); });
+  b.surface(paint, 10, 11, [&](float u, float v) { return body.cabin(u, v); });
   // Windows: patches of the cabin lifted a little.
   const auto pane = [&](float u0, float u1, float v0, float v1, int nu, int nv) {
     b.surface(glass, nu, nv,
-              [&](float u, float v) { return body.cabin(u1 + (u0 - u1) * u, v0 + (v1 - v0) * v, 0.012f); });
+              [&](float u, float v) { return body.cabin(u0 + (u1 - u0) * u, v0 + (v1 - v0) * v, 0.012f); });
   };
   const float span = shape.screen_foot - shape.rear_foot;
   const float roof_v0 = (shape.roof_back - shape.rear_foot) / span;

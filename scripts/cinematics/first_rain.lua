@@ -8,7 +8,7 @@ local weather = night.weather
 local eye = world.spawn {
   name = "camera",
   -- A film camera's shutter is open for half of each frame. Exposed for the lamps, so that the night stays dark.
-  camera = { exposure_s = 1 / 48, exposure_ev100 = 3.6 },
+  camera = { exposure_s = 1 / 48, exposure_ev100 = 2.8 },
   transform = {},
 }
 
