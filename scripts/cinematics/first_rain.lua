@@ -25,10 +25,21 @@ timeline(function()
   }
 end)
 
+-- As film crews light rain: one cool lamp, high behind it, so that the streaks flare against the dark.
+local from, to = { 1.5, 25, -36 }, { 1.5, 2, 4 }
+world.spawn {
+  name = "backlight",
+  transform = { position_m = from, orientation = look_at(from, to) },
+  light = {
+    kind = "spot", colour = { 0.72, 0.85, 1.0 }, intensity_cd = 16000, inner_cone_deg = 8, outer_cone_deg = 26,
+    source_radius_m = 0.5, casts_shadow = true,
+  },
+}
+
 -- The rain: a drizzle, a moment's breath, and then it comes down.
 timeline(function()
   tween(weather.emitter, "rain_mm_per_hour", 2.5, 2.5, "in")
-  go(function() tween(weather.fog, "extinction_per_km", 2, 4, "smooth") end)
+  go(function() tween(weather.fog, "extinction_per_km", 1.2, 4, "smooth") end)
   tween(weather.emitter, "rain_mm_per_hour", 42, 4, "smooth")
 end)
 

@@ -2,5 +2,5 @@
 return {
   emitter = { rain_mm_per_hour = 50 },
   wind = { velocity_mps = { 3, 0, 1 }, gust_mps = 2.5, swirl_mps = 1 },
-  fog = { extinction_per_km = 3.5 },
+  fog = { extinction_per_km = 1.5 },
 }

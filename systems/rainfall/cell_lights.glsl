@@ -24,29 +24,26 @@ float light_weight(LightGpu light, vec3 centre, float radius) {
   return most / (nearest * nearest);
 }
 
-// The strongest lamps for drops within `radius` of a place: indices of 16 bits. Returns how many.
+// The strongest lamps for drops within `radius` of a place, the strongest first: indices of 16 bits. Returns how many.
 int lights_of_cell(vec3 middle, float radius, out uvec4 indices) {
-  uint chosen[RAIN_CELL_LIGHTS];
-  float weights[RAIN_CELL_LIGHTS];
-  int lights_here = 0;
-  for (int i = 0; i < RAIN_CELL_LIGHTS; ++i) chosen[i] = 0u;
+  // Sorted by weight, its upper 16 bits with the index below them: no branches, no array that is indexed by a variable.
+  uint kept[RAIN_CELL_LIGHTS];
+  for (int j = 0; j < RAIN_CELL_LIGHTS; ++j) kept[j] = 0u;
   for (uint i = 0u; i < min(frame.counts.x, 65536u); ++i) {
     float weight = light_weight(lights[i], middle, radius);
-    if (weight <= least_radiance) continue;
-    if (lights_here < RAIN_CELL_LIGHTS) {
-      chosen[lights_here] = i;
-      weights[lights_here++] = weight;
-    } else {
-      int weakest = 0;
-      for (int j = 1; j < RAIN_CELL_LIGHTS; ++j) if (weights[j] < weights[weakest]) weakest = j;
-      if (weight > weights[weakest]) {
-        chosen[weakest] = i;
-        weights[weakest] = weight;
-      }
+    uint key = weight > least_radiance ? floatBitsToUint(weight) & 0xffff0000u | i : 0u;
+    for (int j = 0; j < RAIN_CELL_LIGHTS; ++j) {
+      uint more = max(kept[j], key);
+      key = min(kept[j], key);
+      kept[j] = more;
     }
   }
+  int lights_here = 0;
   indices = uvec4(0u);
-  for (int i = 0; i < RAIN_CELL_LIGHTS; ++i) indices[i >> 1] |= chosen[i] << (16u * uint(i & 1));
+  for (int j = 0; j < RAIN_CELL_LIGHTS; ++j) {
+    indices[j >> 1] |= (kept[j] & 0xffffu) << (16u * uint(j & 1));
+    lights_here += kept[j] != 0u ? 1 : 0;
+  }
   return lights_here;
 }
 

@@ -17,23 +17,49 @@ double frustum_solid_angle(const FrameCamera& camera, int width, int height) {
   return 4.0 * std::asin(a * b / std::sqrt((1.0 + a * a) * (1.0 + b * b)));
 }
 
-// Shrinks the distance until drops and candidate cells fit the budget.
-void fit_distance(FrameRain& rain, double drops_per_m3, const FrameCamera& camera, int width, int height) {
+// Shrinks the distance until drops and candidate cells fit the budget. Under a budget each class reaches as far as it
+// can still be seen: a streak's coverage goes with D^2 / (z V), so large drops are worth drawing farther away than
+// small ones; reach in proportion to D is a little kinder to the small.
+void fit_distance(FrameRain& rain, const FrameCamera& camera, int width, int height) {
   const double solid_angle = frustum_solid_angle(camera, width, height);
   // Integral of r^2 times a fade that is linear from fade_share to 1, times the solid angle, at distance 1.
   const double volume = solid_angle * (1.0 - std::pow(fade_share, 4)) / (12.0 * (1.0 - fade_share));
-  double distance = std::max(0.0f, rain.asked_distance_m);
-  const double per_cubic_metre = drops_per_m3 * volume;
-  const double most = std::max(0, rain.maximum_drops);
-  if (per_cubic_metre * distance * distance * distance > most) distance = std::cbrt(most / per_cubic_metre);
+  const double asked = std::max(0.0f, rain.asked_distance_m), most = std::max(0, rain.maximum_drops);
+  const auto distance_of = [&](const RainClass& c, double metres_per_mm) { return std::min(asked, metres_per_mm * c.diameter_mm); };
+  const auto drops = [&](double metres_per_mm) {
+    double sum = 0.0;
+    for (const RainClass& c : rain.classes)
+      if (c.drawn) sum += c.drops_per_m3 * volume * std::pow(distance_of(c, metres_per_mm), 3);
+    return sum;
+  };
+  constexpr double smallest_mm = 0.05;
+  double low = 0.0, high = asked / smallest_mm;  // where every class reaches the asked distance
+  if (drops(high) <= most) low = high;
+  for (int i = 0; i < 60 && low < high; ++i) {
+    const double middle = 0.5 * (low + high);
+    (drops(middle) <= most ? low : high) = middle;
+  }
+  double farthest = 0.0;
+  for (const RainClass& c : rain.classes)
+    if (c.drawn) farthest = std::max(farthest, distance_of(c, low));
+  double extinction = 0.0, reaching = 0.0;
+  for (RainClass& c : rain.classes) {
+    if (!c.drawn || !(farthest > 0.0)) continue;
+    c.reach = static_cast<float>(distance_of(c, low) / farthest);
+    const double share = double(c.drops_per_m3) * c.diameter_mm * c.diameter_mm;
+    extinction += share;
+    reaching += share * c.reach;
+  }
+  rain.mean_reach = extinction > 0.0 ? static_cast<float>(reaching / extinction) : 1.0f;
   // A narrow view askew to the axes has few drops in a large box of cells: those cost too.
+  double distance = farthest;
   for (int i = 0; i < 200 && distance > 0.0; ++i) {
     if (candidate_cells(rain, camera, width, height, static_cast<float>(distance)) <= 1.0e6 + most) break;
     distance *= 0.95;
   }
   rain.drawn_distance_m = static_cast<float>(distance);
   rain.fade_start_m = static_cast<float>(fade_share * distance);
-  rain.expected_drops = static_cast<float>(per_cubic_metre * distance * distance * distance);
+  rain.expected_drops = farthest > 0.0 ? static_cast<float>(drops(low) * std::pow(distance / farthest, 3)) : 0.0f;
 }
 
 std::vector<double> response_times(const std::vector<DropClass>& classes) {
@@ -56,27 +82,26 @@ FrameRain make_frame_rain(const Emitter& emitter, const WindMotion& motion, cons
   rain.asked_distance_m = emitter.drawn_distance_m;
   rain.maximum_drops = emitter.maximum_drops;
   const auto classes = make_drop_classes(emitter);
-  double drawn_per_m3 = 0.0, extinction = 0.0, drawn_extinction = 0.0, water = 0.0;
+  double extinction = 0.0, drawn_extinction = 0.0, water = 0.0;
   glm::dvec3 momentum(0.0);
   for (std::size_t k = 0; k < classes.size(); ++k) {
     const DropClass& c = classes[k];
     const Drift drift = drift_at(motion, k, time_s);
     const glm::dvec3 fall(0.0, -c.fall_speed_mps, 0.0);
     rain.classes.push_back({static_cast<float>(c.diameter_mm), static_cast<float>(c.fall_speed_mps),
-                            static_cast<float>(c.drops_per_m3), static_cast<float>(c.base_drops_per_m3), c.drawn,
+                            static_cast<float>(c.drops_per_m3), static_cast<float>(c.base_drops_per_m3), 1.0f, c.drawn,
                             drift.displacement_m + fall * time_s, glm::vec3(drift.velocity_mps + fall)});
     extinction += petrichor::extinction_per_m(c);
     const double water_here = petrichor::rain_mm_per_hour(c);
     water += water_here;
     momentum += water_here * (drift.velocity_mps + fall);
     if (!c.drawn) continue;
-    drawn_per_m3 += c.drops_per_m3;
     drawn_extinction += petrichor::extinction_per_m(c);
   }
   rain.extinction_per_m = static_cast<float>(extinction);
   rain.drawn_extinction_per_m = static_cast<float>(drawn_extinction);
   rain.mean_velocity_mps = water > 0.0 ? glm::vec3(momentum / water) : glm::vec3(0.0f, -1.0f, 0.0f);
-  fit_distance(rain, drawn_per_m3, camera, width, height);
+  fit_distance(rain, camera, width, height);
   return rain;
 }
 

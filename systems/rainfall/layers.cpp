@@ -39,7 +39,7 @@ RainLayers layers_in(const FrameRain& rain, const glm::dvec3& reference,
       gpu.box = glm::uvec4(static_cast<std::uint32_t>(count.x), static_cast<std::uint32_t>(count.y),
                            static_cast<std::uint32_t>(count.z), static_cast<std::uint32_t>(result.candidates));
       gpu.velocity_diameter = glm::vec4(c.velocity_mps, c.diameter_mm * 1e-3f);
-      gpu.expected = {layer.expected, std::exp(-layer.expected), 0.0f, 0.0f};
+      gpu.expected = {layer.expected, std::exp(-layer.expected), c.reach, 0.0f};
       result.candidates += std::uint64_t(gpu.box.x) * gpu.box.y * gpu.box.z;
       result.layers.push_back(gpu);
       ++number;
@@ -71,9 +71,9 @@ RainBox view_box(const FrameCamera& camera, int width, int height, float distanc
 
 RainLayers view_layers(const FrameRain& rain, const FrameCamera& camera, int width, int height) {
   if (!(rain.drawn_distance_m > 0.0f)) return {};
-  const RainBox view = view_box(camera, width, height, rain.drawn_distance_m);
   return layers_in(rain, camera.position_m, [&](const RainClass& c, RainBox& box) {
     if (!c.drawn) return false;
+    const RainBox view = view_box(camera, width, height, rain.drawn_distance_m * c.reach);
     // A drop that is seen while the shutter is open may have left the view when it closes.
     const glm::dvec3 swept = glm::dvec3(c.velocity_mps) * double(camera.exposure_s);
     box.low = view.low + glm::min(swept, 0.0);
@@ -83,10 +83,10 @@ RainLayers view_layers(const FrameRain& rain, const FrameCamera& camera, int wid
 }
 
 double candidate_cells(const FrameRain& rain, const FrameCamera& camera, int width, int height, float distance_m) {
-  const RainBox view = view_box(camera, width, height, distance_m);
   double sum = 0.0;
   for (const RainClass& c : rain.classes) {
     if (!c.drawn) continue;
+    const RainBox view = view_box(camera, width, height, distance_m * c.reach);
     const glm::dvec3 size = view.high - view.low + glm::abs(glm::dvec3(c.velocity_mps)) * double(camera.exposure_s);
     for (const RainLayer& layer : layers_of(c)) {
       const glm::dvec3 cells = size / double(layer.edge_m) + 1.0;

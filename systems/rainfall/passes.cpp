@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 #include <memory>
 #include <string>
@@ -18,6 +19,7 @@ namespace {
 struct Command {
   std::uint32_t groups_x = RAIN_COMMAND_WIDTH, groups_y = 0, groups_z = 1, cell_count = 0, drops_drawn = 0;
   std::uint32_t list_count[RAIN_LISTS] = {};
+  std::uint32_t list_groups[6] = {RAIN_COMMAND_WIDTH, 0, 1, RAIN_COMMAND_WIDTH, 0, 1};
 };
 
 // What the three passes share between them and from frame to frame.
@@ -121,6 +123,11 @@ std::string variant(std::string_view name, bool scene, bool lamps) {
   return std::string(name) + (scene ? "_scene" : "") + (lamps ? "_lamps" : "");
 }
 
+void hold_streaks(RainGpu& gpu, std::size_t count) {
+  if (gpu.streaks.bytes < count * sizeof(RainStreakGpu)) gpu.streaks = make_buffer(count * sizeof(RainStreakGpu));
+  bind(RAIN_STREAKS_BINDING, gpu.streaks);
+}
+
 // Uniforms and bindings that drawing drops needs, whichever way.
 void prepare(const RainGpu& gpu, PassContext& context, const Program& program) {
   program.use();
@@ -133,19 +140,23 @@ void prepare(const RainGpu& gpu, PassContext& context, const Program& program) {
 }
 
 void draw_on_gpu(RainGpu& gpu, PassContext& context, bool scene, bool lamps) {
+  hold_streaks(gpu, std::size_t(RAIN_LONG_CAPACITY) * 2);
   prepare(gpu, context, context.program(variant("splat", scene, lamps)));
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT);
   glBindBuffer(GL_DISPATCH_INDIRECT_BUFFER, gpu.command.id);
   glDispatchComputeIndirect(0);
+  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT);
+  const GLintptr groups = offsetof(Command, list_groups);
+  context.program(variant("long_lines", scene, lamps)).use();
+  glDispatchComputeIndirect(groups);
+  context.program(variant("long_capsules", scene, lamps)).use();
+  glDispatchComputeIndirect(groups + 12);
   glBindBuffer(GL_DISPATCH_INDIRECT_BUFFER, 0);
 }
 
 // On a CPU reading counts back costs nothing, and exact sizes save empty dispatches.
 void draw_in_software(RainGpu& gpu, PassContext& context, bool scene, bool lamps) {
-  if (gpu.streaks.bytes == 0) {
-    gpu.streaks = make_buffer(std::size_t(RAIN_STREAK_CAPACITY) * RAIN_LISTS * sizeof(RainStreakGpu));
-  }
-  bind(RAIN_STREAKS_BINDING, gpu.streaks);
+  hold_streaks(gpu, std::size_t(RAIN_STREAK_CAPACITY) * RAIN_LISTS);
   glMemoryBarrier(GL_ALL_BARRIER_BITS);
   Command command;
   read_buffer(gpu.command, &command, sizeof command);
@@ -278,7 +289,10 @@ std::vector<PassOffer> rainfall_passes() {
         offers[1].shaders[variant(name, scene, lamps)] = {{std::string(file)}, defines};
       };
       add("splat", "systems/rainfall/rain_splat.comp.glsl");
-      defines.push_back("SOFTWARE");
+      add("long_lines", "systems/rainfall/rain_lines.comp.glsl");
+      defines.push_back("CAPSULES");
+      add("long_capsules", "systems/rainfall/rain_lines.comp.glsl");
+      defines.back() = "SOFTWARE";
       add("drops", "systems/rainfall/rain_drops.comp.glsl");
       add("lines", "systems/rainfall/rain_lines.comp.glsl");
       defines.push_back("CAPSULES");

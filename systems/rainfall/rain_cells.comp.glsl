@@ -40,7 +40,8 @@ bool examine(uint index, out RainCellGpu result) {
   vec3 swept = -layer.velocity_diameter.xyz * frame.camera_velocity_mps.w;
   vec3 low = corner + min(swept, 0.0), high = corner + edge + max(swept, 0.0);
   vec3 nearest = max(max(corner, -(corner + edge)), 0.0);
-  if (dot(nearest, nearest) > distances.z * distances.z) return false;
+  float reach = layer.expected.z * distances.z;
+  if (dot(nearest, nearest) > reach * reach) return false;
   vec3 centre = 0.5 * (low + high), extent = 0.5 * (high - low);
   if (!touches(frame.view_projection, centre, extent) &&
       !(camera_moves && touches(frame.shutter_view_projection, centre, extent))) return false;

@@ -36,9 +36,9 @@ void main() {
     vec4 place = drop_of_cell(key, m, bits);
     vec3 closed = corner_edge.xyz + corner_edge.w * place.xyz;
     Streak s;
-    if (!project(closed, place.w, layer.velocity_diameter.xyz, layer.velocity_diameter.w, s) || hidden(s)) continue;
+    if (!project(closed, place.w, layer.expected.z, layer.velocity_diameter.xyz, layer.velocity_diameter.w, s) || hidden(s)) continue;
     drawn += 1u;
-    dither_state = bits;
+    drop_bits = bits;
 #ifdef LAMPS
     float distance_to_eye = length(s.middle);
     vec3 sum = vec3(0.0);
@@ -50,7 +50,7 @@ void main() {
     if (s.radius < 0.5 && reach < 1.0) {
       draw_point(s.from, s.to, s.depths, s.area);
     } else {
-      list_streak(s, reach, drop_light, s.area > smooth_coverage * reach);
+      list_streak(s, reach, taps_of(s.area, reach) == 2, drop_light, bits);
     }
   }
   if (drawn > 0u) atomicAdd(drops_drawn, drawn);

@@ -1,22 +1,52 @@
 #version 450 core
-// Draws one list of streaks of similar length (software OpenGL).
-layout(local_size_x = 64) in;
+// Draws a list of streaks: on GPUs several invocations a streak, for a near drop makes as much work as thousands of far
+// ones; in software OpenGL one, for there the streaks of a list are of similar length.
 #include "systems/rainfall/raster.glsl"
+layout(local_size_x = RAIN_LINES_GROUP) in;
 
 layout(std430, binding = RAIN_STREAKS_BINDING) readonly buffer RainStreaks { RainStreakGpu streaks[]; };
+#ifdef SOFTWARE
 uniform uint list, list_size;
 uniform int taps;
+#else
+layout(std430, binding = RAIN_COMMAND_BINDING) readonly buffer RainCommand {
+  uint groups_x, groups_y, groups_z, cell_count, drops_drawn;
+  uint list_count[RAIN_LISTS];
+};
+#endif
 
 void main() {
-  if (gl_GlobalInvocationID.x >= list_size) return;
-  RainStreakGpu s = streaks[list * uint(RAIN_STREAK_CAPACITY) + gl_GlobalInvocationID.x];
-  dither_state = floatBitsToUint(s.from_to.x) * 0x9e3779b9u + floatBitsToUint(s.from_to.y) * 0x85ebca6bu;
+#ifdef SOFTWARE
+  uint slot = gl_GlobalInvocationID.x;
+  if (slot >= list_size) return;
+  slot += list * uint(RAIN_STREAK_CAPACITY);
+#else
+#ifdef CAPSULES
+  const uint list = 1u;
+  lanes = RAIN_CAPSULE_LANES;
+#else
+  const uint list = 0u;
+  lanes = RAIN_LINE_LANES;
+#endif
+  uint invocation = (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * uint(RAIN_LINES_GROUP) +
+                    gl_LocalInvocationID.x;
+  lane = int(invocation % uint(lanes));
+  uint slot = invocation / uint(lanes);
+  if (slot >= min(list_count[list], uint(RAIN_LONG_CAPACITY))) return;
+  slot += list * uint(RAIN_LONG_CAPACITY);
+#endif
+  vec4 from_to = streaks[slot].from_to, depths_area = streaks[slot].depths_area;
+  drop_bits = streaks[slot].bits.x;
 #ifdef LAMPS
-  drop_light = s.light.rgb;
+  drop_light = streaks[slot].light.rgb;
 #endif
 #ifdef CAPSULES
-  draw_capsule(s.from_to.xy, s.from_to.zw, s.depths_area.xy, s.depths_area.w, s.depths_area.z);
+  draw_capsule(from_to.xy, from_to.zw, depths_area.xy, depths_area.w, depths_area.z);
 #else
-  draw_line(s.from_to.xy, s.from_to.zw, s.depths_area.xy, s.depths_area.z, taps);
+#ifndef SOFTWARE
+  vec2 span = abs(from_to.zw - from_to.xy);
+  int taps = taps_of(depths_area.z, max(span.x, span.y));
+#endif
+  draw_line(from_to.xy, from_to.zw, depths_area.xy, depths_area.z, taps);
 #endif
 }

@@ -29,6 +29,11 @@ using glm::vec4;
 #define RAIN_LENGTHS 7            // lists of streaks by length, a factor of two each (software OpenGL)
 #define RAIN_LISTS 15
 #define RAIN_STREAK_CAPACITY 262144
+#define RAIN_LONG_PIXELS 16.0     // GPUs: streaks at least this long, and capsules, are drawn by several invocations each
+#define RAIN_LONG_CAPACITY 524288 // of lines, and of capsules; what is over is drawn by the drop's own invocation
+#define RAIN_LINE_LANES 16        // invocations that share a line
+#define RAIN_CAPSULE_LANES 32
+#define RAIN_LINES_GROUP 64
 #define RAIN_PHASE_BINS 256
 
 // Sums in fixed point. Optical depth: 16 bits a pixel, two rows in a word; 1 is 2^12, so a pixel holds 16 e-folds: a
@@ -45,7 +50,7 @@ struct RainLayerGpu {
   ivec4 first_cell;        // xyz: index of that cell in the class's frame; w: class << 8 | layer
   uvec4 box;               // cells along x, y and z; w: number of cells in the boxes before this one
   vec4 velocity_diameter;  // m/s; w: m
-  vec4 expected;           // x: mean drops in a cell now, y: exp(-x)
+  vec4 expected;           // x: mean drops in a cell now, y: exp(-x), z: the class's share of the drawn distance
 };
 
 // A cell that is seen and holds drops.
@@ -55,11 +60,12 @@ struct RainCellGpu {
   uvec4 lights;  // up to 8 indices of 16 bits
 };
 
-// A streak that waits to be drawn (software OpenGL).
+// A streak that waits to be drawn.
 struct RainStreakGpu {
   vec4 from_to;      // pixels
   vec4 depths_area;  // z: area, w: radius, pixels
   vec4 light;        // output radiance from lamps
+  uvec4 bits;        // x: random
 };
 
 #ifdef __cplusplus

@@ -1,13 +1,12 @@
 #version 450 core
-// Draws the drops of the listed cells: 32 invocations a cell. For GPUs; software GL takes rain_drops and rain_lines.
+// Draws the drops of the listed cells, 32 invocations a cell, and lists the long streaks for rain_lines. For GPUs;
+// software OpenGL takes rain_drops and rain_lines.
 layout(local_size_x = 64) in;
 #include "systems/rainfall/streak.glsl"
 #include "systems/rainfall/raster.glsl"
+#include "systems/rainfall/streak_lists.glsl"
 
 layout(std430, binding = RAIN_CELLS_BINDING) readonly buffer RainCells { RainCellGpu cells[]; };
-layout(std430, binding = RAIN_COMMAND_BINDING) buffer RainCommand {
-  uint groups_x, groups_y, groups_z, cell_count, drops_drawn;
-};
 uniform uint capacity;
 shared uint group_drops;
 
@@ -16,13 +15,14 @@ bool draw_drop(RainCellGpu cell, RainLayerGpu layer, uint m) {
   vec4 place = drop_of_cell(cell.key.xyz, m, bits);
   vec3 closed = cell.corner_edge.xyz + cell.corner_edge.w * place.xyz;
   Streak s;
-  if (!project(closed, place.w, layer.velocity_diameter.xyz, layer.velocity_diameter.w, s) || hidden(s)) return false;
-  dither_state = bits;
+  if (!project(closed, place.w, layer.expected.z, layer.velocity_diameter.xyz, layer.velocity_diameter.w, s) || hidden(s)) return false;
+  drop_bits = bits;
 #ifdef LAMPS
   float distance_to_eye = length(s.middle);
   vec3 sum = vec3(0.0);
   int lights_here = int(cell.key.w >> 12u & 15u);
-  for (int i = 0; i < lights_here; ++i) {
+  for (int i = 0; i < RAIN_CELL_LIGHTS; ++i) {  // of constant length, so that the cell stays in registers
+    if (i >= lights_here) break;
     uint pair = cell.lights[i >> 1];
     sum += lamp_light(lights[(i & 1) == 0 ? pair & 0xffffu : pair >> 16u], s.middle, distance_to_eye);
   }
@@ -30,9 +30,11 @@ bool draw_drop(RainCellGpu cell, RainLayerGpu layer, uint m) {
 #endif
   vec2 span = abs(s.to - s.from);
   float reach = max(span.x, span.y);
-  if (s.radius >= 0.5) draw_capsule(s.from, s.to, s.depths, s.radius, s.area);
+  bool capsule = s.radius >= 0.5;
+  if ((capsule || reach >= float(RAIN_LONG_PIXELS)) && list_streak(s, reach, false, drop_light, bits)) return true;
+  if (capsule) draw_capsule(s.from, s.to, s.depths, s.radius, s.area);
   else if (reach < 1.0) draw_point(s.from, s.to, s.depths, s.area);
-  else draw_line(s.from, s.to, s.depths, s.area, s.area > smooth_coverage * reach ? 2 : 1);
+  else draw_line(s.from, s.to, s.depths, s.area, taps_of(s.area, reach));
   return true;
 }
 

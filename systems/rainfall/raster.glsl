@@ -18,8 +18,19 @@ layout(std430, binding = RAIN_RADIANCE_BINDING) buffer RainRadiance { uint radia
 layout(binding = 0) uniform sampler2D scene_depth;
 #endif
 
-uint dither_state;
+// The invocations that share a streak, and which of them this is: each draws every lanes-th row or column.
+int lane = 0, lanes = 1;
+
+uint drop_bits;     // random, the drop's own
+uint dither_state;  // a function of the drop and the place, whichever invocation draws it: so the sums are the same
 vec3 drop_light = vec3(0.0);  // output radiance from lamps
+
+void seed_dither(int place) {
+  uint h = drop_bits + uint(place) * 0x9e3779b9u;
+  h = (h ^ (h >> 16u)) * 0x7feb352du;
+  h = (h ^ (h >> 15u)) * 0x846ca68bu;
+  dither_state = h ^ (h >> 16u);
+}
 
 float dither() {
   dither_state = dither_state * 747796405u + 2891336453u;
@@ -70,6 +81,7 @@ void add(ivec2 pixel, vec2 amounts, float depth) {
 
 // Narrower than a pixel and moving by less: one pixel, at a moment by chance.
 void draw_point(vec2 from, vec2 to, vec2 depths, float area) {
+  dither_state = drop_bits;
   float t = dither();
   add(ivec2(floor(mix(from, to, t))), vec2(depth_of(area), 0.0), mix(depths.x, depths.y, t));
 }
@@ -77,6 +89,7 @@ void draw_point(vec2 from, vec2 to, vec2 depths, float area) {
 // Coverage of a pixel above which a line is shared between the two nearest pixels; below it falls to one of them by
 // chance, which has the same mean.
 const float smooth_coverage = 0.004;
+int taps_of(float area, float reach) { return area > smooth_coverage * reach ? 2 : 1; }
 
 // Narrower than a pixel: a line one pixel wide, `taps` 1 or 2 pixels across.
 void draw_line(vec2 from, vec2 to, vec2 depths, float area, int taps) {
@@ -94,7 +107,8 @@ void draw_line(vec2 from, vec2 to, vec2 depths, float area, int taps) {
   float stride = steep ? 2.0 : 1.0;
   float limit = steep ? frame.size.y : frame.size.x;
   int first = int(floor(max(low_end.x, 0.0) / stride)), last = int(floor(min(high_end.x, limit - 1.0) / stride));
-  for (int i = first; i <= last; ++i) {
+  for (int i = first + lane; i <= last; i += lanes) {
+    seed_dither(i);
     float start = float(i) * stride;
     float low = max(low_end.x, start), high = min(high_end.x, start + stride);
     float middle = 0.5 * (low + high) - low_end.x;
@@ -122,7 +136,8 @@ void draw_capsule(vec2 from, vec2 to, vec2 depths, float r, float area) {
   if (len < 0.5) {  // stands still: a disc with the edge of a pixel
     vec2 centre = 0.5 * (from + to);
     ivec2 low = ivec2(max(floor(centre - r - 1.0), 0.0)), high = ivec2(min(ceil(centre + r + 1.0), frame.size.xy - 1.0));
-    for (int y = low.y; y <= high.y; ++y) {
+    for (int y = low.y + lane; y <= high.y; y += lanes) {
+      seed_dither(y);
       for (int x = low.x; x <= high.x; ++x) {
         float edge = r + 0.5 - distance(vec2(x, y) + 0.5, centre);
         if (edge > 0.0) add(ivec2(x, y), vec2(depth_of(kept * min(edge, 1.0)), 0.0), 0.5 * (depths.x + depths.y));
@@ -138,7 +153,8 @@ void draw_capsule(vec2 from, vec2 to, vec2 depths, float r, float area) {
   float limit = steep ? frame.size.y : frame.size.x, limit_minor = steep ? frame.size.x : frame.size.y;
   int first = int(max(floor(min(start, end) - r), 0.0)), last = int(min(ceil(max(start, end) + r), limit - 1.0));
   float half_width = r / abs(major) + r * abs(minor / major);
-  for (int i = first; i <= last; ++i) {
+  for (int i = first + lane; i <= last; i += lanes) {
+    seed_dither(i);
     float centre = start_minor + (float(i) + 0.5 - start) * (minor / major);
     // The caps reach beyond the band's own ends by less than the band is wide.
     int low = int(max(floor(centre - half_width), 0.0)), high = int(min(ceil(centre + half_width), limit_minor - 1.0));

@@ -25,8 +25,8 @@ struct Streak {
 };
 
 // False: not seen.
-bool project(vec3 closed, float mark, vec3 velocity, float diameter, out Streak s) {
-  float fade = mix(distances.y, distances.z, mark);  // where this drop leaves
+bool project(vec3 closed, float mark, float reach, vec3 velocity, float diameter, out Streak s) {
+  float fade = reach * mix(distances.y, distances.z, mark);  // where this drop leaves
   bool seen = dot(closed, closed) <= fade * fade;
   vec3 opened = closed - velocity * frame.camera_velocity_mps.w;
   vec4 c1 = frame.view_projection * vec4(closed, 1.0), c0 = frame.shutter_view_projection * vec4(opened, 1.0);

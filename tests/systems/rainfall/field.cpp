@@ -135,7 +135,14 @@ TEST(DropField, DistanceShrinksToTheBudget) {
   const WindMotion motion = start_rain_motion(emitter, {});
   emitter.maximum_drops = 200000;
   const FrameRain capped = make_frame_rain(emitter, motion, camera, 1280, 720, 0.0);
-  EXPECT_LT(capped.drawn_distance_m, 10.0f);
+  float small = 0.0f, large = 0.0f;  // how far they are drawn
+  for (const RainClass& c : capped.classes) {
+    if (!c.drawn) continue;
+    (c.diameter_mm < 1.0f ? small : large) = std::max(c.diameter_mm < 1.0f ? small : large, c.reach * capped.drawn_distance_m);
+  }
+  EXPECT_LT(small, 10.0f);
+  EXPECT_GT(large, small) << "what can be seen farther is drawn farther";
+  EXPECT_LE(large, emitter.drawn_distance_m);
   EXPECT_NEAR(capped.expected_drops, 200000.0f, 1.0f);
   emitter.maximum_drops = 400000000;
   EXPECT_EQ(make_frame_rain(emitter, motion, camera, 1280, 720, 0.0).drawn_distance_m, emitter.drawn_distance_m);
