@@ -24,7 +24,7 @@ struct Command {
 
 // What the three passes share between them and from frame to frame.
 struct RainGpu {
-  Buffer layers, cells, command, optical_depth, radiance, optics, streaks;
+  Buffer layers, cells, command, optical_depth, radiance, optics, streaks, read_back;
   VertexArray no_vertices;
   bool software = false;  // draw sorted by length
   bool software_device = false, device_known = false;
@@ -321,9 +321,12 @@ RainStats rain_stats(const Frame& frame) {
   const auto gpu = newest.lock();
   if (!gpu || gpu->frame_number != frame.number || gpu->layer_count == 0 || gpu->command.bytes < sizeof(Command))
     return {};
+  // By way of a copy: a driver may move a buffer that is read into the computer's memory, where atomics are slow.
   Command command;
+  if (gpu->read_back.bytes == 0) gpu->read_back = make_buffer(sizeof command);
   glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
-  read_buffer(gpu->command, &command, sizeof command);
+  glCopyNamedBufferSubData(gpu->command.id, gpu->read_back.id, 0, 0, sizeof command);
+  read_buffer(gpu->read_back, &command, sizeof command);
   return {command.drops_drawn, std::min(command.cell_count, gpu->capacity)};
 }
 

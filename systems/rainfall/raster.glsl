@@ -48,7 +48,8 @@ void add(ivec2 pixel, vec2 amounts, float depth) {
   uvec2 size = uvec2(frame.size.xy);
   if (uint(pixel.x) >= size.x || uint(pixel.y) >= size.y) return;
   dither_state = dither_state * 747796405u + 2891336453u;
-  vec2 chance = vec2(dither_state >> 16u, dither_state & 0xffffu) / 65536.0;
+  // The half keeps the mean of amounts far below a unit too.
+  vec2 chance = (vec2(dither_state >> 16u, dither_state & 0xffffu) + 0.5) / 65536.0;
   uvec2 units = uvec2(amounts * float(RAIN_DEPTH_ONE) + chance);
   uint word = (units.x | units.y << 16u) << (16u * uint(pixel.y & 1));
 #ifdef LAMPS
