@@ -5,6 +5,7 @@
 
 #include <exception>
 
+#include "engine/app/interrupt.hpp"
 #include "engine/app/options.hpp"
 #include "engine/core/log.hpp"
 #include "engine/main/commands.hpp"
@@ -31,7 +32,8 @@ int main(int argc, char** argv) try {
   const Result<void> done = std::visit(Run{}, *call.options);
   if (done) return exit_done;
   log_error("{}", done.error().message);
-  return exit_failed;
+  end_if_interrupted();
+  return done.error().wrong_call ? exit_wrong_call : exit_failed;
 } catch (const std::exception& exception) {
   // Nothing is expected to throw; what does (no memory left) still ends with a message.
   log_error("{}", exception.what());

@@ -28,6 +28,13 @@ bool on_path(const std::string& program) {
   return false;
 }
 
+struct Descriptor {
+  int number;
+  ~Descriptor() {
+    if (number >= 0) close(number);
+  }
+};
+
 class FilmRecorder final : public Recorder {
  public:
   FilmRecorder(fs::path file, int width, int height) : file_(std::move(file)), width_(width), height_(height) {
@@ -53,13 +60,22 @@ class FilmRecorder final : public Recorder {
       return failure(fmt::format("{}: ffmpeg is not installed, so no film can be written. Install the package ffmpeg, or write "
                                  "pictures: --out {}",
                                  file_.string(), (file_.parent_path() / (file_.stem().string() + "_%04d.png")).string()));
+    // ffmpeg would say it less well, and later.
+    const Descriptor writable{open(log_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644)};
+    if (writable.number < 0)
+      return failure(fmt::format("cannot write {}: {}; choose a folder that you may write to", file_.string(), std::strerror(errno)));
     int ends[2];
     if (pipe2(ends, O_CLOEXEC) != 0) return failure(fmt::format("cannot make a pipe to ffmpeg: {}", std::strerror(errno)));
     posix_spawn_file_actions_t actions;
     posix_spawn_file_actions_init(&actions);
     posix_spawn_file_actions_adddup2(&actions, ends[0], STDIN_FILENO);
     posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
-    posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, log_.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0644);
+    posix_spawn_file_actions_adddup2(&actions, writable.number, STDERR_FILENO);
+    // In a process group of its own: Ctrl-C is ours to handle.
+    posix_spawnattr_t attributes;
+    posix_spawnattr_init(&attributes);
+    posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);
+    posix_spawnattr_setpgroup(&attributes, 0);
     const bool webm = file_.extension() == ".webm";
     std::vector<std::string> words = {
         "ffmpeg", "-nostdin", "-hide_banner", "-loglevel", "error", "-y", "-f", "rawvideo", "-pixel_format", "rgba", "-video_size",
@@ -73,8 +89,9 @@ class FilmRecorder final : public Recorder {
     std::vector<char*> arguments;
     for (const std::string& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
     arguments.push_back(nullptr);
-    const int error = posix_spawnp(&child_, "ffmpeg", &actions, nullptr, arguments.data(), environ);
+    const int error = posix_spawnp(&child_, "ffmpeg", &actions, &attributes, arguments.data(), environ);
     posix_spawn_file_actions_destroy(&actions);
+    posix_spawnattr_destroy(&attributes);
     close(ends[0]);
     pipe_ = ends[1];
     if (error != 0) {

@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 #include <charconv>
+#include <fmt/format.h>
 #include <iostream>
 
 namespace petrichor {
@@ -18,6 +19,18 @@ bool parse_int(std::string_view text, std::int64_t& value) {
 bool parse_pair(std::string_view text, char separator, std::int64_t& a, std::int64_t& b) {
   const auto at = text.find(separator);
   return at != std::string_view::npos && parse_int(text.substr(0, at), a) && parse_int(text.substr(at + 1), b);
+}
+
+// As CLI::Range, which lets NaN through.
+CLI::Validator between(double low, double high) {
+  const std::string range = fmt::format("{} to {}", low, high);
+  return CLI::Validator(
+      [=](std::string& text) {
+        double value = 0.0;
+        if (CLI::detail::lexical_cast(text, value) && value >= low && value <= high) return std::string();
+        return fmt::format("expected a number from {}; got '{}'", range, text);
+      },
+      "FROM " + range);
 }
 
 void add_size(CLI::App& app, int& width, int& height) {
@@ -96,7 +109,7 @@ ParsedCommandLine parse_command_line(int argc, char** argv) {
   auto* render_app = app.add_subcommand("render", "Render frames to a film or to pictures, without a window");
   add_subject(*render_app, render.subject, true);
   add_size(*render_app, render.width, render.height);
-  render_app->add_option("--fps", render.fps, "Frames per second")->check(CLI::Range(0.01, 10000.0));
+  render_app->add_option("--fps", render.fps, "Frames per second")->check(between(0.01, 10000.0));
   render_app
       ->add_option_function<std::string>(
           "--frames",
@@ -126,9 +139,9 @@ ParsedCommandLine parse_command_line(int argc, char** argv) {
   auto* measure_app = app.add_subcommand("measure", "Read physical quantities from the running system, as JSON");
   measure_app->require_subcommand(1);
   auto* measure_rain = measure_app->add_subcommand("rain", "Count the water that crosses a plane in the drop field");
-  measure_rain->add_option("--rate", measure.rate_mm_per_hour, "Asked rain rate, mm/h")->check(CLI::Range(0.0, 300.0))->capture_default_str();
-  measure_rain->add_option("--wind", measure.wind_mps, "Wind speed, m/s")->check(CLI::Range(-80.0, 80.0))->capture_default_str();
-  measure_rain->add_option("--seconds", measure.seconds, "How long to count, s")->check(CLI::Range(0.01, 3600.0))->capture_default_str();
+  measure_rain->add_option("--rate", measure.rate_mm_per_hour, "Asked rain rate, mm/h")->check(between(0.0, 300.0))->capture_default_str();
+  measure_rain->add_option("--wind", measure.wind_mps, "Wind speed, m/s")->check(between(-80.0, 80.0))->capture_default_str();
+  measure_rain->add_option("--seconds", measure.seconds, "How long to count, s")->check(between(0.01, 3600.0))->capture_default_str();
   measure_rain->add_option("--seed", measure.seed, "Which of all possible rains")->capture_default_str();
 
   auto* info_app = app.add_subcommand("info", "Describe device, components, systems, passes and techniques");

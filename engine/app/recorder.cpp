@@ -82,21 +82,21 @@ Result<RecordTarget> record_target(const fs::path& out, std::int64_t frames) {
   if (extension == ".png") target.kind = RecordKind::png;
   else if (extension == ".exr") target.kind = RecordKind::exr;
   else if (extension == ".mp4" || extension == ".mkv" || extension == ".webm" || extension == ".mov") target.kind = RecordKind::film;
-  else return failure(fmt::format("--out {}: cannot tell the kind of file; use .png, .exr, .mp4, .mkv, .webm or .mov", out.string()));
+  else return wrong_call(fmt::format("--out {}: cannot tell the kind of file; use .png, .exr, .mp4, .mkv, .webm or .mov", out.string()));
 
   const std::string text = out.string();
   const auto percent = text.find('%');
   if (percent != std::string::npos) {
     const auto d = text.find_first_not_of("0123456789", percent + 1);
     const bool good = d != std::string::npos && text[d] == 'd' && d - percent <= 3 && text.find('%', d) == std::string::npos;
-    if (!good) return failure(fmt::format("--out {}: the frame number's place is written %d or %04d, once", text));
-    if (target.kind == RecordKind::film) return failure(fmt::format("--out {}: a film is one file; leave out the %d", text));
+    if (!good) return wrong_call(fmt::format("--out {}: the frame number's place is written %d or %04d, once", text));
+    if (target.kind == RecordKind::film) return wrong_call(fmt::format("--out {}: a film is one file; leave out the %d", text));
     target.numbered = true;
   } else if (target.kind != RecordKind::film && frames > 1) {
-    return failure(fmt::format("--out {}: {} frames do not fit one picture; put %04d in the name, or ask for one frame with --frames A:B",
+    return wrong_call(fmt::format("--out {}: {} frames do not fit one picture; put %04d in the name, or ask for one frame with --frames A:B",
                                text, frames));
   }
-  if (fs::is_directory(out)) return failure(fmt::format("--out {}: is a folder; name a file", text));
+  if (fs::is_directory(out)) return wrong_call(fmt::format("--out {}: is a folder; name a file", text));
   return target;
 }
 

@@ -10,6 +10,7 @@ namespace petrichor {
 
 struct Error {
   std::string message;
+  bool wrong_call = false;  // what the user asked for makes no sense, as against work that failed
 };
 
 template <class T>
@@ -17,6 +18,10 @@ using Result = tl::expected<T, Error>;
 
 inline tl::unexpected<Error> failure(std::string message) {
   return tl::unexpected<Error>(Error{std::move(message)});
+}
+
+inline tl::unexpected<Error> wrong_call(std::string message) {
+  return tl::unexpected<Error>(Error{std::move(message), true});
 }
 
 }  // namespace petrichor

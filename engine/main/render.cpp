@@ -3,6 +3,7 @@
 #include <chrono>
 #include <nlohmann/json.hpp>
 
+#include "engine/app/interrupt.hpp"
 #include "engine/app/progress.hpp"
 #include "engine/app/recorder.hpp"
 #include "engine/core/log.hpp"
@@ -76,8 +77,12 @@ Result<void> render(const RenderOptions& options) {
   std::vector<std::uint8_t> bytes;
   std::vector<float> floats;
   Frame frame;
+  catch_interrupts();
   Progress progress("rendering", job->frames.end - job->frames.begin);
   for (std::int64_t number = job->frames.begin; number < job->frames.end; ++number) {
+    if (interrupted())
+      return failure(fmt::format("interrupted before frame {}{}", number,
+                                 job->target.kind == RecordKind::film ? "; the unfinished film is removed" : ""));
     const double time_s = static_cast<double>(number) / job->fps;
     if (auto advanced = world.advance_to(time_s); !advanced) return advanced;
     world.extract(frame, static_cast<std::uint64_t>(number), time_s, job->width, job->height);

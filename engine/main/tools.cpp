@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
@@ -24,10 +25,17 @@
 namespace petrichor {
 namespace {
 
-nlohmann::json to_json(const std::vector<BenchRow>& rows) {
-  nlohmann::json array = nlohmann::json::array();
+nlohmann::ordered_json number_or_text(const std::string& text) {
+  std::int64_t value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error == std::errc{} && end == text.data() + text.size()) return value;
+  return text;
+}
+
+nlohmann::ordered_json to_json(const std::vector<BenchRow>& rows) {
+  nlohmann::ordered_json array = nlohmann::ordered_json::array();
   for (const BenchRow& row : rows) {
-    nlohmann::json item = {{"name", row.name}, {"n", row.n}, {"size", row.size}, {"median", row.median_ms}, {"p95", row.p95_ms}};
+    nlohmann::ordered_json item = {{"name", row.name}, {"n", number_or_text(row.n)}, {"size", row.size}, {"median", row.median_ms}, {"p95", row.p95_ms}};
     if (row.gpu_median_ms) item["gpu_median"] = *row.gpu_median_ms;
     array.push_back(std::move(item));
   }
@@ -35,7 +43,7 @@ nlohmann::json to_json(const std::vector<BenchRow>& rows) {
 }
 
 // One row a line: an array that people can read and programs too.
-std::string row_lines(const nlohmann::json& array) {
+std::string row_lines(const nlohmann::ordered_json& array) {
   std::string text = "[";
   for (std::size_t i = 0; i < array.size(); ++i) text += (i ? ",\n " : "\n ") + array[i].dump();
   return text + "\n]\n";
@@ -45,7 +53,7 @@ std::string row_lines(const nlohmann::json& array) {
 Result<std::vector<std::string>> pick(const std::vector<std::string>& asked, const std::vector<std::string>& known, const char* what) {
   for (const std::string& name : asked)
     if (std::find(known.begin(), known.end(), name) == known.end())
-      return failure(fmt::format("no {} is called '{}'; there are: {}", what, name, fmt::join(known, ", ")));
+      return wrong_call(fmt::format("no {} is called '{}'; there are: {}", what, name, fmt::join(known, ", ")));
   return asked.empty() ? known : asked;
 }
 

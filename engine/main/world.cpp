@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "components/components.hpp"
 #include "engine/core/log.hpp"
@@ -28,7 +29,11 @@ bool is_model(const fs::path& file) {
 Result<fs::path> find_file(const fs::path& file) {
   std::error_code ignored;
   if (fs::exists(file, ignored)) return fs::absolute(file);
-  return find_data(file);
+  auto found = find_data(file);
+  if (!found && file.is_relative())
+    return failure(fmt::format("{} is neither here, in {}, nor among the program's files: {}", file.string(),
+                               fs::current_path(ignored).string(), found.error().message));
+  return found;
 }
 
 // "component.field=value": numbers, true/false and [x, y, z] are JSON; "x,y,z" is a vector; the rest is text.
@@ -123,9 +128,9 @@ Result<void> World::apply_options(const SubjectOptions& options) {
     const auto equals = text.find('=');
     const std::string target = text.substr(0, equals);
     const auto dot = target.find('.');
-    if (dot == std::string::npos) return failure(fmt::format("--set {}: expected component.field=value", text));
+    if (dot == std::string::npos) return wrong_call(fmt::format("--set {}: expected component.field=value", text));
     if (auto pinned = script_->pin(target.substr(0, dot), target.substr(dot + 1), parse_value(text.substr(equals + 1))); !pinned)
-      return failure(fmt::format("--set {}: {}", text, pinned.error().message));
+      return wrong_call(fmt::format("--set {}: {}", text, pinned.error().message));
   }
   for (const std::string& text : options.techniques) {
     const auto equals = text.find('=');
@@ -136,7 +141,7 @@ Result<void> World::apply_options(const SubjectOptions& options) {
       found |= technique.effect == effect && technique.rung == rung;
       known += fmt::format("\n  {}={}  {}", technique.effect, technique.rung, technique.meaning);
     }
-    if (!found) return failure(fmt::format("--technique {}: no such technique. There are:{}", text, known));
+    if (!found) return wrong_call(fmt::format("--technique {}: no such technique. There are:{}", text, known));
     // Fog alone is the drop field whose every drop is farther than it draws.
     if (effect == "rainfall" && rung == "fog")
       if (auto pinned = script_->pin("emitter", "drawn_distance_m", 0.0); !pinned) return pinned;
@@ -172,6 +177,12 @@ Result<void> World::advance_to(double time_s, const PlayerInput& input) {
   return outcome;
 }
 
+bool World::has_camera() {
+  bool found = false;
+  registry_.view<const Camera>().each([&](Entity, const Camera& camera) { found |= camera.active; });
+  return found;
+}
+
 bool World::has_walker() {
   bool found = false;
   registry_.view<const Walker>().each([&](Entity, const Walker&) { found = true; });
@@ -186,6 +197,13 @@ void World::extract(Frame& frame, std::uint64_t number, double time_s, int width
   frame.height = height;
   frame.scene = scene_;
   frame.affordable_drops = affordable_drops_;
+  if (!has_camera()) {
+    frame.camera.position_m = {0.0, 1.7, 0.0};
+    if (!std::exchange(told_of_no_camera_, true))
+      log_warn("at {:.3f} s there is no active camera, so the scene is seen from 1.7 m above its origin; make one: "
+               "world.spawn{{ camera = {{}}, transform = {{ position_m = {{0, 1.7, 10}} }} }}",
+               time_s);
+  }
   SystemContext now = context();
   now.time_s = time_s;
   now.interpolation = std::clamp(1.0 - (static_cast<double>(tick_) - time_s / simulation_step_s), 0.0, 1.0);

@@ -45,6 +45,7 @@ class World {
   Result<std::vector<Entity>> spawn(const std::filesystem::path& file);
   Result<void> apply_options(const SubjectOptions&);
   SystemContext context();
+  bool has_camera();
   bool has_walker();
 
   Registry registry_;
@@ -56,6 +57,7 @@ class World {
   GpuScene* scene_;
   std::uint32_t seed_;
   std::int32_t affordable_drops_ = 4000000;
+  bool told_of_no_camera_ = false;
   std::int64_t tick_ = -1;  // the newest simulated tick
 };
 

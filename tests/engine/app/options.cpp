@@ -31,8 +31,8 @@ TEST(Options, WrongCallsExitWithTwo) {
   for (const std::vector<std::string>& words : std::vector<std::vector<std::string>>{
            {}, {"rain"}, {"render"}, {"render", "a.lua", "--size", "640"}, {"render", "a.lua", "--size", "0x4"},
            {"render", "a.lua", "--size", "99999x4"}, {"render", "a.lua", "--frames", "5:5"}, {"render", "a.lua", "--frames", "-1:5"},
-           {"render", "a.lua", "--set", "novalue"}, {"render", "a.lua", "--fps", "0"}, {"render", "a.lua", "--nonsense"},
-           {"measure"}, {"measure", "rain", "--rate", "-1"}, {"bench", "--drops", "0"}}) {
+           {"render", "a.lua", "--set", "novalue"}, {"render", "a.lua", "--fps", "0"}, {"render", "a.lua", "--fps", "nan"}, {"render", "a.lua", "--fps", "ten"}, {"render", "a.lua", "--nonsense"},
+           {"measure"}, {"measure", "rain", "--rate", "-1"}, {"measure", "rain", "--rate", "nan"}, {"bench", "--drops", "0"}}) {
     testing::internal::CaptureStderr();
     const auto parsed = parse(words);
     const std::string said = testing::internal::GetCapturedStderr();

@@ -78,6 +78,22 @@ TEST_F(Recording, AnUnwritableFolderIsAMessageNamingTheFile) {
   EXPECT_NE(recorder.error().message.find("plain"), std::string::npos);
 }
 
+TEST_F(Recording, AFilmThatCannotBeWrittenSaysSoAtOnce) {
+  // A dangling link stands for a folder that takes no new files: root may write anywhere else.
+  fs::create_symlink("/proc/no such folder/log", folder / ".a.part.mp4.log");
+  const auto recorder = make_recorder(*record_target(folder / "a.mp4", 3), 2, 2, 24);
+  ASSERT_FALSE(recorder);
+  if (recorder.error().message.find("not installed") != std::string::npos) GTEST_SKIP() << recorder.error().message;
+  EXPECT_NE(recorder.error().message.find("cannot write " + (folder / "a.mp4").string()), std::string::npos)
+      << recorder.error().message;
+}
+
+TEST_F(Recording, ATargetThatMakesNoSenseIsAWrongCall) {
+  const auto target = record_target("film.txt", 1);
+  ASSERT_FALSE(target);
+  EXPECT_TRUE(target.error().wrong_call);
+}
+
 TEST_F(Recording, AFailedPictureLeavesWhatWasThere) {
   fs::create_directories(folder / "a.png");  // in the way of the renaming
   std::ofstream(folder / "a.png" / "inside") << "precious";
