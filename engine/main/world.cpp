@@ -159,7 +159,11 @@ SystemContext World::context() {
 Result<void> World::advance_to(double time_s, const PlayerInput& input) {
   // The tolerance keeps frame times that are whole ticks, but for rounding, at their tick.
   const auto last = static_cast<std::int64_t>(std::ceil(time_s / simulation_step_s - 1e-6));
-  if (!collision_ && has_walker()) collision_ = std::make_unique<CollisionScene>(registry_, models_);
+  if (has_walker() && (!collision_ || collision_models_ != models_.size())) {
+    propagate_transforms(registry_);  // what was just spawned has no place in the world before the first tick
+    collision_ = std::make_unique<CollisionScene>(registry_, models_);
+    collision_models_ = models_.size();
+  }
   PlayerInput rest = input;
   const auto steps = std::max<std::int64_t>(last - tick_, 1);
   rest.turn_right_deg /= static_cast<float>(steps);

@@ -53,6 +53,7 @@ class World {
   Schedule<SystemContext> schedule_;
   std::vector<std::shared_ptr<const Model>> models_;
   std::unique_ptr<CollisionScene> collision_;
+  std::size_t collision_models_ = 0;  // that many models were there when it was made
   std::unique_ptr<ScriptHost> script_;
   GpuScene* scene_;
   std::uint32_t seed_;
