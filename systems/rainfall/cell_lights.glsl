@@ -3,13 +3,25 @@
 #define SYSTEMS_RAINFALL_CELL_LIGHTS_GLSL
 #include "systems/frame.glsl"
 #include "systems/rainfall/rain_shared.h"
+#ifndef LAMPS  // else streak.glsl has it
+layout(std430, binding = RAIN_OPTICS_BINDING) readonly buffer RainOptics { float phase[RAIN_PHASE_BINS]; };
+#endif
 uniform float least_radiance;  // output units: lamps that cannot make a drop of the cell this bright are left out
 
-// Largest output radiance that a light can give a drop within `radius` of `centre` (the phase never exceeds 1.4).
+float phase_at(float sine_of_half_turn) {
+  return phase[min(int(clamp(sine_of_half_turn, 0.0, 1.0) * float(RAIN_PHASE_BINS)), RAIN_PHASE_BINS - 1)];
+}
+
+// About the largest output radiance that a light can give a drop within `radius` of `centre`: the phase falls with the
+// turn but for the rainbow, so its largest is at the least turn, or there.
 float light_weight(LightGpu light, vec3 centre, float radius) {
   if (light.cone_shadow.w == 0.0) return 0.0;
-  float most = max(light.intensity_radius.r, max(light.intensity_radius.g, light.intensity_radius.b)) * 1.4 * frame.lens.w;
-  if (light.direction_kind.w == float(LIGHT_DIRECTIONAL)) return most;
+  float most = max(light.intensity_radius.r, max(light.intensity_radius.g, light.intensity_radius.b)) * frame.lens.w;
+  float away = max(length(centre), 1e-3);
+  if (light.direction_kind.w == float(LIGHT_DIRECTIONAL)) {
+    float half_turn = sqrt(max(0.5 + 0.5 * dot(light.direction_kind.xyz, centre) / away, 0.0)), spread = 0.5 * radius / away;
+    return most * max(phase_at(half_turn - spread), phase_at(half_turn + spread));
+  }
   vec3 to_centre = centre - light.position_range.xyz;
   float d = length(to_centre);
   float nearest = d - radius;
@@ -21,7 +33,10 @@ float light_weight(LightGpu light, vec3 centre, float radius) {
     if (nearest_cosine * light.cone_shadow.x + light.cone_shadow.y <= 0.0 && c < sqrt(1.0 - s * s)) return 0.0;
   }
   nearest = max(nearest, 0.1);
-  return most / (nearest * nearest);
+  // The directions to lamp and eye turn by radius / distance across the cell; the sine of half an angle by at most half.
+  float half_turn = sqrt(max(0.5 + 0.5 * dot(to_centre, centre) / (max(d, 1e-3) * away), 0.0));
+  float spread = 0.5 * radius * (1.0 / max(d, 1e-3) + 1.0 / away);
+  return most * max(phase_at(half_turn - spread), phase_at(half_turn + spread)) / (nearest * nearest);
 }
 
 // The strongest lamps for drops within `radius` of a place, the strongest first: indices of 16 bits. Returns how many.

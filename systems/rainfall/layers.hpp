@@ -15,7 +15,9 @@
 
 namespace petrichor {
 
-constexpr float drops_per_full_cell = 28.0f;  // mean; RAIN_LANES invocations share a cell
+// Mean; RAIN_LANES invocations share a cell, by turns. 56 took 25% less time than 28 on an H200: the last turn is seldom
+// nearly empty, and there are half as many cells.
+constexpr float drops_per_full_cell = 56.0f;
 
 struct RainLayer {
   float edge_m;    // of its cells

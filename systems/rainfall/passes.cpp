@@ -92,6 +92,7 @@ void list_cells(RainGpu& gpu, PassContext& context) {
   const RainLayers view = view_layers(*frame.rain, frame.camera, context.width, context.height);
   gpu.layer_count = static_cast<std::uint32_t>(view.layers.size());
   gpu.frame_number = frame.number;
+  update_optics(gpu, frame.sky);
   const Command start;
   upload(gpu.command, &start, sizeof start);
   if (view.layers.empty()) return;
@@ -105,6 +106,7 @@ void list_cells(RainGpu& gpu, PassContext& context) {
   bind(RAIN_LAYERS_BINDING, gpu.layers);
   bind(RAIN_CELLS_BINDING, gpu.cells);
   bind(RAIN_COMMAND_BINDING, gpu.command);
+  bind(RAIN_OPTICS_BINDING, gpu.optics);
   const Program& program = context.program(gpu.software ? "cells_software" : "cells");
   program.use();
   program.set("layer_count", unsigned(gpu.layer_count));
@@ -162,8 +164,8 @@ void draw_in_software(RainGpu& gpu, PassContext& context, bool scene, bool lamps
   read_buffer(gpu.command, &command, sizeof command);
   const std::uint32_t cells = std::min(command.cell_count, gpu.capacity);
   // As many cells at a time as surely fit a list: even if all their drops came into one, it would take a mean that is
-  // seventeen deviations too high.
-  constexpr std::uint32_t slice = RAIN_STREAK_CAPACITY / 29;
+  // eighteen deviations too high.
+  constexpr std::uint32_t slice = RAIN_STREAK_CAPACITY / 58;
   for (std::uint32_t first = 0; first < cells; first += slice) {
     const Program& drops = context.program(variant("drops", scene, lamps));
     prepare(gpu, context, drops);
@@ -201,7 +203,6 @@ void splat(RainGpu& gpu, PassContext& context) {
     clear_buffer(gpu.optical_depth);
     clear_buffer(gpu.radiance);
   }
-  update_optics(gpu, frame.sky);
   if (gpu.layer_count == 0) return;
   bind(RAIN_LAYERS_BINDING, gpu.layers);
   bind(RAIN_CELLS_BINDING, gpu.cells);

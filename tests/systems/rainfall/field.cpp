@@ -84,7 +84,7 @@ TEST(DropField, CostFollowsTheRate) {
       for (const RainLayer& layer : layers_of(c)) {
         density += layer.expected / (layer.edge_m * layer.edge_m * layer.edge_m);
         EXPECT_LE(layer.expected, drops_per_full_cell * 1.001f);
-        EXPECT_LT(layer.edge_m, 12.0f);
+        EXPECT_LT(layer.edge_m, 16.0f);  // of the rarest drops; more would list cells that hardly touch the view
       }
       EXPECT_NEAR(density, c.drops_per_m3, 1e-3 * c.drops_per_m3);
     }
