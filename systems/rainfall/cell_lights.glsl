@@ -19,7 +19,8 @@ float light_weight(LightGpu light, vec3 centre, float radius) {
   float most = max(light.intensity_radius.r, max(light.intensity_radius.g, light.intensity_radius.b)) * frame.lens.w;
   float away = max(length(centre), 1e-3);
   if (light.direction_kind.w == float(LIGHT_DIRECTIONAL)) {
-    float half_turn = sqrt(max(0.5 + 0.5 * dot(light.direction_kind.xyz, centre) / away, 0.0)), spread = 0.5 * radius / away;
+    float half_turn = sqrt(max(0.5 + 0.5 * dot(light.direction_kind.xyz, centre) / away, 0.0));
+    float spread = 0.5 * radius / away;
     return most * max(phase_at(half_turn - spread), phase_at(half_turn + spread));
   }
   vec3 to_centre = centre - light.position_range.xyz;
@@ -33,7 +34,7 @@ float light_weight(LightGpu light, vec3 centre, float radius) {
     if (nearest_cosine * light.cone_shadow.x + light.cone_shadow.y <= 0.0 && c < sqrt(1.0 - s * s)) return 0.0;
   }
   nearest = max(nearest, 0.1);
-  // The directions to lamp and eye turn by radius / distance across the cell; the sine of half an angle by at most half.
+  // Directions to lamp and eye turn by radius / distance across the cell; the sine of half the turn by at most half.
   float half_turn = sqrt(max(0.5 + 0.5 * dot(to_centre, centre) / (max(d, 1e-3) * away), 0.0));
   float spread = 0.5 * radius * (1.0 / max(d, 1e-3) + 1.0 / away);
   return most * max(phase_at(half_turn - spread), phase_at(half_turn + spread)) / (nearest * nearest);

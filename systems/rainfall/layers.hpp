@@ -15,8 +15,8 @@
 
 namespace petrichor {
 
-// Mean; RAIN_LANES invocations share a cell, by turns. 56 took 25% less time than 28 on an H200: the last turn is seldom
-// nearly empty, and there are half as many cells.
+// Mean; RAIN_LANES invocations share a cell, by turns. 56 took a quarter less time than 28 on an H200: the last turn is
+// seldom nearly empty, and there are half as many cells.
 constexpr float drops_per_full_cell = 56.0f;
 
 struct RainLayer {

@@ -36,7 +36,8 @@ void main() {
     vec4 place = drop_of_cell(key, m, bits);
     vec3 closed = corner_edge.xyz + corner_edge.w * place.xyz;
     Streak s;
-    if (!project(closed, place.w, layer.expected.z, layer.velocity_diameter.xyz, layer.velocity_diameter.w, s) || hidden(s)) continue;
+    vec4 falls = layer.velocity_diameter;
+    if (!project(closed, place.w, layer.expected.z, falls.xyz, falls.w, s) || hidden(s)) continue;
     drawn += 1u;
     drop_bits = bits;
 #ifdef LAMPS

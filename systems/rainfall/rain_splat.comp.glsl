@@ -15,7 +15,8 @@ bool draw_drop(RainCellGpu cell, RainLayerGpu layer, uint m) {
   vec4 place = drop_of_cell(cell.key.xyz, m, bits);
   vec3 closed = cell.corner_edge.xyz + cell.corner_edge.w * place.xyz;
   Streak s;
-  if (!project(closed, place.w, layer.expected.z, layer.velocity_diameter.xyz, layer.velocity_diameter.w, s) || hidden(s)) return false;
+  vec4 falls = layer.velocity_diameter;
+  if (!project(closed, place.w, layer.expected.z, falls.xyz, falls.w, s) || hidden(s)) return false;
   drop_bits = bits;
 #ifdef LAMPS
   float distance_to_eye = length(s.middle);
