@@ -29,8 +29,8 @@ using glm::vec4;
 #define RAIN_LENGTHS 7            // lists of streaks by length, a factor of two each (software OpenGL)
 #define RAIN_LISTS 15
 #define RAIN_STREAK_CAPACITY 262144
+#define RAIN_LONG_PIXELS 16.0      // GPUs: streaks at least this long, and capsules, are drawn by several invocations
 #define RAIN_LONG_CAPACITY 524288  // lines, and as many capsules; what is over is drawn where it is found
-#define RAIN_LONG_CAPACITY 524288  // lines, and as many capsules; what is over is drawn by the drop's own invocation
 #define RAIN_LINE_LANES 16        // invocations that share a line
 #define RAIN_CAPSULE_LANES 32
 #define RAIN_LINES_GROUP 64
