@@ -20,6 +20,7 @@ namespace {
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 const Clock::time_point program_start = Clock::now();
+constexpr double warm_up_ms = 400.0;
 
 double milliseconds_since(Clock::time_point start) {
   return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
@@ -88,9 +89,9 @@ Result<void> render(const RenderOptions& options) {
     world.extract(frame, static_cast<std::uint64_t>(number), time_s, job->width, job->height);
 
     // Writing pictures takes longer than drawing them, and a GPU that waits lowers its clock: before a frame is timed
-    // it is drawn a few times more.
+    // it is drawn again and again for a while.
     if (want_stats && !renderer.device.software)
-      for (int warm_up = 0; warm_up < 12; ++warm_up)
+      for (const auto begun = Clock::now(); milliseconds_since(begun) < warm_up_ms; glFinish())
         if (auto drawn = draw(renderer, frame, false); !drawn) return tl::unexpected(drawn.error());
     if (want_stats) glFinish();
     const auto start = Clock::now();

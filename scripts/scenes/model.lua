@@ -57,6 +57,22 @@ if model:count("light") == 0 then
   lamp("back lamp", vec3(-0.62, 0.34, -0.7), 16, { 1, 0.7, 0.4 }, false)
 end
 
+-- A model that brings bright light (the sun of an exporter, a studio lamp) is exposed for it: a grey surface (0.18) in E
+-- lux has 0.18 E / pi cd/m2, and EV 0 shows 0.125 cd/m2 as middle grey. Lamps are taken at their own node's place.
+local brightest_lux = 0
+model:each("light", function(e)
+  local lux = e.light.intensity_cd
+  if e.light.kind ~= "directional" then
+    local offset = e.transform.position_m - centre
+    local d2 = offset.x ^ 2 + offset.y ^ 2 + offset.z ^ 2
+    lux = lux / math.max(d2, (0.3 * distance) ^ 2, 1e-6)
+  end
+  brightest_lux = math.max(brightest_lux, lux)
+end)
+if brightest_lux > 0 then
+  camera.camera.exposure_ev100 = math.min(math.max(math.log(0.18 * brightest_lux / math.pi / 0.125, 2), 2), 18)
+end
+
 local sky_weather = weather.spawn("rain")
 sky_weather.emitter.rain_mm_per_hour = 20
 -- Mist hides what is far; a model that is seen from far away stands in clearer air.
