@@ -44,7 +44,7 @@ Result<const Texture*> draw(Renderer& renderer, Frame& frame, bool profile) {
   return picture;
 }
 
-std::int32_t affordable_drops(const DeviceInfo& device) { return device.software ? 60'000 : 10'000'000; }
+std::int32_t affordable_drops(const DeviceInfo& device) { return device.software ? 35'000 : 10'000'000; }
 
 void read_picture(const Texture& texture, std::vector<std::uint8_t>& rgba8) {
   rgba8.resize(static_cast<std::size_t>(texture.width) * texture.height * 4);
