@@ -19,37 +19,81 @@ namespace petrichor {
 // In frame order. Input to propagate run at every tick of the fixed clock, extract once a frame.
 std::vector<SystemEntry<SystemContext>> all_systems() {
   return {
-      {.name = "walk", .phase = Phase::input, .reads = {"input"}, .writes = {"walker", "transform"}, .needs = {"walker"}, .run = walk},
+      {.name = "walk",
+       .phase = Phase::input,
+       .reads = {"input"},
+       .writes = {"walker", "transform"},
+       .needs = {"walker"},
+       .run = walk},
 
-      {.name = "timeline", .phase = Phase::script, .reads = {"time"}, .changes = {"*"},
+      {.name = "timeline",
+       .phase = Phase::script,
+       .reads = {"time"},
+       .changes = {"*"},
        .run = [](SystemContext& c) { c.script_result = c.advance_script(c.time_s); }},
 
-      {.name = "rainfall", .phase = Phase::simulate, .reads = {"emitter", "wind", "time"}, .writes = {"rain_motion"}, .needs = {"emitter"},
+      {.name = "rainfall",
+       .phase = Phase::simulate,
+       .reads = {"emitter", "wind", "time"},
+       .writes = {"rain_motion"},
+       .needs = {"emitter"},
        .run = [](SystemContext& c) { simulate_rainfall(c.registry, c.time_s); }},
 
-      {.name = "propagate_transforms", .phase = Phase::propagate, .reads = {"transform"}, .writes = {"world_transform", "parent"},
+      {.name = "propagate_transforms",
+       .phase = Phase::propagate,
+       .reads = {"transform"},
+       .writes = {"world_transform", "parent"},
        .run = [](SystemContext& c) { propagate_transforms(c.registry); }},
-      {.name = "track_cameras", .phase = Phase::propagate, .reads = {"camera", "world_transform"}, .writes = {"camera_motion"},
-       .needs = {"camera"}, .after = {"propagate_transforms"}, .run = [](SystemContext& c) { track_cameras(c.registry); }},
+      {.name = "track_cameras",
+       .phase = Phase::propagate,
+       .reads = {"camera", "world_transform"},
+       .writes = {"camera_motion"},
+       .needs = {"camera"},
+       .after = {"propagate_transforms"},
+       .run = [](SystemContext& c) { track_cameras(c.registry); }},
 
-      {.name = "extract_camera", .phase = Phase::extract, .reads = {"camera", "camera_motion"}, .writes = {"frame.camera"}, .needs = {"camera"},
+      {.name = "extract_camera",
+       .phase = Phase::extract,
+       .reads = {"camera", "camera_motion"},
+       .writes = {"frame.camera"},
+       .needs = {"camera"},
        .run = [](SystemContext& c) { extract_camera(c.registry, *c.frame, c.interpolation, c.step_s); }},
-      {.name = "extract_instances", .phase = Phase::extract, .reads = {"mesh_instance", "world_transform"}, .writes = {"frame.instances"},
-       .needs = {"mesh_instance"}, .run = [](SystemContext& c) { extract_instances(c.registry, *c.frame); }},
-      {.name = "extract_lights", .phase = Phase::extract, .reads = {"light", "world_transform"}, .writes = {"frame.lights"}, .needs = {"light"},
+      {.name = "extract_instances",
+       .phase = Phase::extract,
+       .reads = {"mesh_instance", "world_transform"},
+       .writes = {"frame.instances"},
+       .needs = {"mesh_instance"},
+       .run = [](SystemContext& c) { extract_instances(c.registry, *c.frame); }},
+      {.name = "extract_lights",
+       .phase = Phase::extract,
+       .reads = {"light", "world_transform"},
+       .writes = {"frame.lights"},
+       .needs = {"light"},
        .run = [](SystemContext& c) { extract_lights(c.registry, *c.frame); }},
-      {.name = "extract_atmosphere", .phase = Phase::extract, .reads = {"sky", "fog"}, .writes = {"frame.sky", "frame.mist"},
-       .needs = {"sky", "fog"}, .run = [](SystemContext& c) { extract_atmosphere(c.registry, *c.frame); }},
-      {.name = "extract_rainfall", .phase = Phase::extract, .reads = {"emitter", "rain_motion", "frame.camera"}, .writes = {"frame.rain"},
-       .needs = {"emitter"}, .after = {"extract_camera"}, .run = [](SystemContext& c) { extract_rainfall(c.registry, *c.frame, c.time_s); }},
+      {.name = "extract_atmosphere",
+       .phase = Phase::extract,
+       .reads = {"sky", "fog"},
+       .writes = {"frame.sky", "frame.mist"},
+       .needs = {"sky", "fog"},
+       .run = [](SystemContext& c) { extract_atmosphere(c.registry, *c.frame); }},
+      {.name = "extract_rainfall",
+       .phase = Phase::extract,
+       .reads = {"emitter", "rain_motion", "frame.camera"},
+       .writes = {"frame.rain"},
+       .needs = {"emitter"},
+       .after = {"extract_camera"},
+       .run = [](SystemContext& c) { extract_rainfall(c.registry, *c.frame, c.time_s); }},
   };
 }
 
-std::vector<std::string_view> outside_resources() { return {"time", "input"}; }
+std::vector<std::string_view> outside_resources() {
+  return {"time", "input"};
+}
 
 std::vector<PassOffer> all_passes() {
   std::vector<PassOffer> all;
-  for (std::vector<PassOffer> some : {geometry_passes(), occlusion_passes(), lighting_passes(), atmosphere_passes(), rainfall_passes(), image_passes()})
+  for (std::vector<PassOffer> some : {geometry_passes(), occlusion_passes(), lighting_passes(), atmosphere_passes(),
+                                      rainfall_passes(), image_passes()})
     all.insert(all.end(), std::make_move_iterator(some.begin()), std::make_move_iterator(some.end()));
   return all;
 }

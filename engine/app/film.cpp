@@ -57,15 +57,18 @@ class FilmRecorder final : public Recorder {
 
   Result<void> start(double fps) {
     if (!on_path("ffmpeg"))
-      return failure(fmt::format("{}: ffmpeg is not installed, so no film can be written. Install the package ffmpeg, or write "
-                                 "pictures: --out {}",
-                                 file_.string(), (file_.parent_path() / (file_.stem().string() + "_%04d.png")).string()));
+      return failure(
+          fmt::format("{}: ffmpeg is not installed, so no film can be written. Install the package ffmpeg, or write "
+                      "pictures: --out {}",
+                      file_.string(), (file_.parent_path() / (file_.stem().string() + "_%04d.png")).string()));
     // ffmpeg would say it less well, and later.
     const Descriptor writable{open(log_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644)};
     if (writable.number < 0)
-      return failure(fmt::format("cannot write {}: {}; choose a folder that you may write to", file_.string(), std::strerror(errno)));
+      return failure(fmt::format("cannot write {}: {}; choose a folder that you may write to", file_.string(),
+                                 std::strerror(errno)));
     int ends[2];
-    if (pipe2(ends, O_CLOEXEC) != 0) return failure(fmt::format("cannot make a pipe to ffmpeg: {}", std::strerror(errno)));
+    if (pipe2(ends, O_CLOEXEC) != 0)
+      return failure(fmt::format("cannot make a pipe to ffmpeg: {}", std::strerror(errno)));
     posix_spawn_file_actions_t actions;
     posix_spawn_file_actions_init(&actions);
     posix_spawn_file_actions_adddup2(&actions, ends[0], STDIN_FILENO);
@@ -78,13 +81,38 @@ class FilmRecorder final : public Recorder {
     posix_spawnattr_setpgroup(&attributes, 0);
     const bool webm = file_.extension() == ".webm";
     std::vector<std::string> words = {
-        "ffmpeg", "-nostdin", "-hide_banner", "-loglevel", "error", "-y", "-f", "rawvideo", "-pixel_format", "rgba", "-video_size",
-        fmt::format("{}x{}", width_, height_), "-framerate", fmt::format("{}", fps), "-i", "pipe:0",
+        "ffmpeg",
+        "-nostdin",
+        "-hide_banner",
+        "-loglevel",
+        "error",
+        "-y",
+        "-f",
+        "rawvideo",
+        "-pixel_format",
+        "rgba",
+        "-video_size",
+        fmt::format("{}x{}", width_, height_),
+        "-framerate",
+        fmt::format("{}", fps),
+        "-i",
+        "pipe:0",
         // Rows come from the bottom; 4:2:0 needs even sides.
-        "-vf", "vflip,pad=ceil(iw/2)*2:ceil(ih/2)*2:color=black,scale=out_color_matrix=bt709:out_range=tv", "-pix_fmt", "yuv420p",
-        "-color_primaries", "bt709", "-color_trc", "bt709", "-colorspace", "bt709",};
-    if (webm) words.insert(words.end(), {"-c:v", "libvpx-vp9", "-crf", "24", "-b:v", "0"});
-    else words.insert(words.end(), {"-c:v", "libx264", "-crf", "16", "-movflags", "+faststart"});
+        "-vf",
+        "vflip,pad=ceil(iw/2)*2:ceil(ih/2)*2:color=black,scale=out_color_matrix=bt709:out_range=tv",
+        "-pix_fmt",
+        "yuv420p",
+        "-color_primaries",
+        "bt709",
+        "-color_trc",
+        "bt709",
+        "-colorspace",
+        "bt709",
+    };
+    if (webm)
+      words.insert(words.end(), {"-c:v", "libvpx-vp9", "-crf", "24", "-b:v", "0"});
+    else
+      words.insert(words.end(), {"-c:v", "libx264", "-crf", "16", "-movflags", "+faststart"});
     words.push_back(beside_.string());
     std::vector<char*> arguments;
     for (const std::string& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
@@ -131,7 +159,8 @@ class FilmRecorder final : public Recorder {
     if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return {};
     std::stringstream said;
     said << std::ifstream(log_).rdbuf();
-    return failure(fmt::format("{}: ffmpeg failed: {}", file_.string(), said.str().empty() ? "it said nothing" : said.str()));
+    return failure(
+        fmt::format("{}: ffmpeg failed: {}", file_.string(), said.str().empty() ? "it said nothing" : said.str()));
   }
 
   fs::path file_, beside_, log_;

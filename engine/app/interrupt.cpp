@@ -8,7 +8,9 @@ namespace {
 
 volatile std::sig_atomic_t caught = 0;
 
-void remember(int signal) { caught = signal; }
+void remember(int signal) {
+  caught = signal;
+}
 
 }  // namespace
 
@@ -25,7 +27,9 @@ void catch_interrupts() {
   }
 }
 
-bool interrupted() { return caught != 0; }
+bool interrupted() {
+  return caught != 0;
+}
 
 void end_if_interrupted() {
   if (!caught) return;

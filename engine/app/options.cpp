@@ -1,8 +1,9 @@
 #include "engine/app/options.hpp"
 
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
 #include <charconv>
-#include <fmt/format.h>
 #include <iostream>
 
 namespace petrichor {
@@ -39,7 +40,8 @@ void add_size(CLI::App& app, int& width, int& height) {
          [&](const std::string& text) {
            std::int64_t w = 0, h = 0;
            if (!parse_pair(text, 'x', w, h) || w < 1 || h < 1 || w > largest_side || h > largest_side)
-             throw CLI::ValidationError("--size", "expected WIDTHxHEIGHT of 1 to 16384 pixels, for example 640x360; got '" + text + "'");
+             throw CLI::ValidationError(
+                 "--size", "expected WIDTHxHEIGHT of 1 to 16384 pixels, for example 640x360; got '" + text + "'");
            width = static_cast<int>(w);
            height = static_cast<int>(h);
          },
@@ -65,8 +67,9 @@ void add_assignments(CLI::App& app, const std::string& name, std::vector<std::st
 }
 
 void add_subject(CLI::App& app, SubjectOptions& subject, bool required) {
-  auto* option = app.add_option("subject", subject.subject, "A Lua script, or any .gltf or .glb model to put in the rain")
-                     ->type_name("SCRIPT|MODEL");
+  auto* option =
+      app.add_option("subject", subject.subject, "A Lua script, or any .gltf or .glb model to put in the rain")
+          ->type_name("SCRIPT|MODEL");
   if (required) option->required();
   add_assignments(app, "--set", subject.sets, "component.field=value",
                   "Set a field of every entity that has the component, after the script's own set-up (repeatable)");
@@ -101,7 +104,8 @@ ParsedCommandLine parse_command_line(int argc, char** argv) {
   auto* play_app = app.add_subcommand("play", "Walk about in a window (default: scripts/sandbox.lua)");
   add_subject(*play_app, play.subject, false);
   add_size(*play_app, play.width, play.height);
-  play_app->add_option("--stop-after", play.stop_after_frames, "Leave after this many frames")->check(CLI::NonNegativeNumber);
+  play_app->add_option("--stop-after", play.stop_after_frames, "Leave after this many frames")
+      ->check(CLI::NonNegativeNumber);
   play_app->footer(
       "Keys: WASD and mouse walk, Shift runs, Space jumps or rises, F flies, F1 times, F2 inspector,\n"
       "1 drizzle, 2 rain, 3 downpour, 4 dry, Tab frees the mouse, Esc leaves.");
@@ -116,7 +120,8 @@ ParsedCommandLine parse_command_line(int argc, char** argv) {
           [&](const std::string& text) {
             FrameRange range;
             if (!parse_pair(text, ':', range.begin, range.end) || range.begin < 0 || range.end <= range.begin)
-              throw CLI::ValidationError("--frames", "expected A:B, the frames from A up to but not including B; got '" + text + "'");
+              throw CLI::ValidationError(
+                  "--frames", "expected A:B, the frames from A up to but not including B; got '" + text + "'");
             render.frames = range;
           },
           "Frames from A up to, not including, B; the same bytes as in a whole run")
@@ -127,7 +132,9 @@ ParsedCommandLine parse_command_line(int argc, char** argv) {
 
   auto* bench_app = app.add_subcommand("bench", "Measure speed; one JSON row a case");
   bench_app->add_option("names", bench.names, "Which benchmarks (default: all): ecs, rain")->type_name("NAME");
-  bench_app->add_option("--drops", bench.drops, "Drops of the rain benchmark")->check(CLI::Range(std::int64_t{1}, std::int64_t{1000000000}))->capture_default_str();
+  bench_app->add_option("--drops", bench.drops, "Drops of the rain benchmark")
+      ->check(CLI::Range(std::int64_t{1}, std::int64_t{1000000000}))
+      ->capture_default_str();
   add_size(*bench_app, bench.width, bench.height);
   bench_app->add_option("--frames", bench.frames, "Frames timed")->check(CLI::Range(1, 1000000))->capture_default_str();
   bench_app->add_option("--json", bench.json, "Write there instead of standard output")->type_name("FILE");
@@ -139,16 +146,24 @@ ParsedCommandLine parse_command_line(int argc, char** argv) {
   auto* measure_app = app.add_subcommand("measure", "Read physical quantities from the running system, as JSON");
   measure_app->require_subcommand(1);
   auto* measure_rain = measure_app->add_subcommand("rain", "Count the water that crosses a plane in the drop field");
-  measure_rain->add_option("--rate", measure.rate_mm_per_hour, "Asked rain rate, mm/h")->check(between(0.0, 300.0))->capture_default_str();
-  measure_rain->add_option("--wind", measure.wind_mps, "Wind speed, m/s")->check(between(-80.0, 80.0))->capture_default_str();
-  measure_rain->add_option("--seconds", measure.seconds, "How long to count, s")->check(between(0.01, 3600.0))->capture_default_str();
+  measure_rain->add_option("--rate", measure.rate_mm_per_hour, "Asked rain rate, mm/h")
+      ->check(between(0.0, 300.0))
+      ->capture_default_str();
+  measure_rain->add_option("--wind", measure.wind_mps, "Wind speed, m/s")
+      ->check(between(-80.0, 80.0))
+      ->capture_default_str();
+  measure_rain->add_option("--seconds", measure.seconds, "How long to count, s")
+      ->check(between(0.01, 3600.0))
+      ->capture_default_str();
   measure_rain->add_option("--seed", measure.seed, "Which of all possible rains")->capture_default_str();
 
   auto* info_app = app.add_subcommand("info", "Describe device, components, systems, passes and techniques");
   info_app->add_flag("--json", info.json, "As JSON");
-  info_app->add_option("subject", info.subject, "Whose frame --graph draws (default: the city)")->type_name("SCRIPT|MODEL");
+  info_app->add_option("subject", info.subject, "Whose frame --graph draws (default: the city)")
+      ->type_name("SCRIPT|MODEL");
   info_app->add_option("--graph", info.graph, "Write the frame's passes as Graphviz")->type_name("FILE.dot");
-  info_app->add_option("--reference", info.reference, "Write the reference of components and scripts")->type_name("FILE.md");
+  info_app->add_option("--reference", info.reference, "Write the reference of components and scripts")
+      ->type_name("FILE.md");
 
   try {
     app.parse(argc, argv);
@@ -156,12 +171,18 @@ ParsedCommandLine parse_command_line(int argc, char** argv) {
     parsed.exit_code = app.exit(error, std::cout, std::cerr) == 0 ? exit_done : exit_wrong_call;
     return parsed;
   }
-  if (*play_app) parsed.options = play;
-  else if (*render_app) parsed.options = render;
-  else if (*bench_app) parsed.options = bench;
-  else if (*chart_app) parsed.options = chart;
-  else if (*measure_app) parsed.options = measure;
-  else parsed.options = info;
+  if (*play_app)
+    parsed.options = play;
+  else if (*render_app)
+    parsed.options = render;
+  else if (*bench_app)
+    parsed.options = bench;
+  else if (*chart_app)
+    parsed.options = chart;
+  else if (*measure_app)
+    parsed.options = measure;
+  else
+    parsed.options = info;
   return parsed;
 }
 

@@ -19,7 +19,8 @@ namespace fs = std::filesystem;
 Result<void> make_folder_of(const fs::path& file) {
   std::error_code error;
   if (file.has_parent_path()) fs::create_directories(file.parent_path(), error);
-  if (error) return failure(fmt::format("{}: cannot make the folder: {}", file.parent_path().string(), error.message()));
+  if (error)
+    return failure(fmt::format("{}: cannot make the folder: {}", file.parent_path().string(), error.message()));
   return {};
 }
 
@@ -53,7 +54,8 @@ class PictureRecorder final : public Recorder {
       // OpenGL's rows start at the bottom: begin with the last one and walk back.
       const auto texel = static_cast<OIIO::stride_t>(4 * sizeof(*data));
       const auto row = texel * picture.width;
-      return output->write_image(type, data + static_cast<std::ptrdiff_t>(picture.height - 1) * picture.width * 4, texel, -row);
+      return output->write_image(type, data + static_cast<std::ptrdiff_t>(picture.height - 1) * picture.width * 4,
+                                 texel, -row);
     };
     const bool good = exr ? write_rows(picture.rgba32f.data(), OIIO::TypeDesc::FLOAT)
                           : write_rows(picture.rgba8.data(), OIIO::TypeDesc::UINT8);
@@ -77,24 +79,33 @@ fs::path numbered_file(const fs::path& pattern, std::int64_t number) {
 
 Result<RecordTarget> record_target(const fs::path& out, std::int64_t frames) {
   std::string extension = out.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(), [](unsigned char c) { return std::tolower(c); });
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return std::tolower(c); });
   RecordTarget target{RecordKind::png, out, false};
-  if (extension == ".png") target.kind = RecordKind::png;
-  else if (extension == ".exr") target.kind = RecordKind::exr;
-  else if (extension == ".mp4" || extension == ".mkv" || extension == ".webm" || extension == ".mov") target.kind = RecordKind::film;
-  else return wrong_call(fmt::format("--out {}: cannot tell the kind of file; use .png, .exr, .mp4, .mkv, .webm or .mov", out.string()));
+  if (extension == ".png")
+    target.kind = RecordKind::png;
+  else if (extension == ".exr")
+    target.kind = RecordKind::exr;
+  else if (extension == ".mp4" || extension == ".mkv" || extension == ".webm" || extension == ".mov")
+    target.kind = RecordKind::film;
+  else
+    return wrong_call(
+        fmt::format("--out {}: cannot tell the kind of file; use .png, .exr, .mp4, .mkv, .webm or .mov", out.string()));
 
   const std::string text = out.string();
   const auto percent = text.find('%');
   if (percent != std::string::npos) {
     const auto d = text.find_first_not_of("0123456789", percent + 1);
-    const bool good = d != std::string::npos && text[d] == 'd' && d - percent <= 3 && text.find('%', d) == std::string::npos;
+    const bool good =
+        d != std::string::npos && text[d] == 'd' && d - percent <= 3 && text.find('%', d) == std::string::npos;
     if (!good) return wrong_call(fmt::format("--out {}: the frame number's place is written %d or %04d, once", text));
-    if (target.kind == RecordKind::film) return wrong_call(fmt::format("--out {}: a film is one file; leave out the %d", text));
+    if (target.kind == RecordKind::film)
+      return wrong_call(fmt::format("--out {}: a film is one file; leave out the %d", text));
     target.numbered = true;
   } else if (target.kind != RecordKind::film && frames > 1) {
-    return wrong_call(fmt::format("--out {}: {} frames do not fit one picture; put %04d in the name, or ask for one frame with --frames A:B",
-                               text, frames));
+    return wrong_call(fmt::format(
+        "--out {}: {} frames do not fit one picture; put %04d in the name, or ask for one frame with --frames A:B",
+        text, frames));
   }
   if (fs::is_directory(out)) return wrong_call(fmt::format("--out {}: is a folder; name a file", text));
   return target;

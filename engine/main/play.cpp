@@ -3,8 +3,8 @@
 #define GLFW_INCLUDE_NONE  // epoxy brings OpenGL
 #include <GLFW/glfw3.h>
 
-#include <chrono>
 #include <array>
+#include <chrono>
 #include <deque>
 
 #include "components/components.hpp"
@@ -62,7 +62,8 @@ struct Reloader {
     frame.watch(files);
   }
 
-  void check(const PlayOptions& options, std::unique_ptr<World>& world, Renderer& renderer, double& time_s, InterfaceState& interface) {
+  void check(const PlayOptions& options, std::unique_ptr<World>& world, Renderer& renderer, double& time_s,
+             InterfaceState& interface) {
     if (Clock::now() - last < std::chrono::milliseconds(250)) return;
     last = Clock::now();
     bool shaders_changed = false;
@@ -71,7 +72,8 @@ struct Reloader {
     if (failed.empty() && !shaders_changed && !frame_changed && !scripts_changed) return;
     interface.errors = std::move(failed);
     if (frame_changed)
-      if (auto loaded = load_render_script(renderer, world->render_script()); !loaded) interface.errors.push_back(loaded.error().message);
+      if (auto loaded = load_render_script(renderer, world->render_script()); !loaded)
+        interface.errors.push_back(loaded.error().message);
     if (scripts_changed) {
       auto scene = std::make_unique<GpuScene>();
       if (auto again = World::open(options.subject, scene.get())) {
@@ -133,8 +135,10 @@ Result<void> play(const PlayOptions& options) {
     if (input.key_pressed[GLFW_KEY_F1]) state.show_times = !state.show_times;
     if (input.key_pressed[GLFW_KEY_F2]) state.show_inspector = !state.show_inspector;
     // The inspector needs the pointer, walking needs it away.
-    if (input.key_pressed[GLFW_KEY_TAB]) renderer.context->capture_mouse(!input.mouse_captured);
-    else if (input.key_pressed[GLFW_KEY_F2]) renderer.context->capture_mouse(!state.show_inspector);
+    if (input.key_pressed[GLFW_KEY_TAB])
+      renderer.context->capture_mouse(!input.mouse_captured);
+    else if (input.key_pressed[GLFW_KEY_F2])
+      renderer.context->capture_mouse(!state.show_inspector);
 
     const auto now = Clock::now();
     const double spent_s = std::chrono::duration<double>(now - last).count();
@@ -153,8 +157,10 @@ Result<void> play(const PlayOptions& options) {
       world->extract(frame, static_cast<std::uint64_t>(number), time_s, width, height);
       // On software OpenGL, looking at the times costs a few glFinishes; only then are they paid.
       const auto picture = draw(renderer, frame, state.show_times && number % 8 == 0);
-      if (picture) show(**picture, *renderer.context);
-      else if (state.errors.empty()) state.errors = {picture.error().message};
+      if (picture)
+        show(**picture, *renderer.context);
+      else if (state.errors.empty())
+        state.errors = {picture.error().message};
     }
     frame_ms.push_back(static_cast<float>(spent_s * 1000.0));
     if (frame_ms.size() > 240) frame_ms.pop_front();

@@ -40,9 +40,12 @@ Result<Job> plan(const RenderOptions& options, const World& world) {
   job.width = options.width ? options.width : said.size_px ? said.size_px->x : 1280;
   job.height = options.height ? options.height : said.size_px ? said.size_px->y : 720;
   job.fps = options.fps > 0.0 ? options.fps : said.fps.value_or(24.0);
-  if (options.frames) job.frames = *options.frames;
-  else if (said.duration_s) job.frames = {0, std::max<std::int64_t>(1, std::llround(*said.duration_s * job.fps))};
-  else job.frames = {0, 1};
+  if (options.frames)
+    job.frames = *options.frames;
+  else if (said.duration_s)
+    job.frames = {0, std::max<std::int64_t>(1, std::llround(*said.duration_s * job.fps))};
+  else
+    job.frames = {0, 1};
   fs::path out = options.out;
   if (out.empty()) {
     const bool film = job.frames.end - job.frames.begin > 1;
@@ -114,7 +117,8 @@ Result<void> render(const RenderOptions& options) {
     Picture recorded{job->width, job->height, {}, {}};
     if (linear) {
       const Texture* light = renderer.graph->linear_output();
-      if (!light) return failure(fmt::format("{}: has no linear_output, which .exr needs", world.render_script().string()));
+      if (!light)
+        return failure(fmt::format("{}: has no linear_output, which .exr needs", world.render_script().string()));
       read_picture(*light, floats);
       for (float& value : floats) value *= frame.uniforms.lens.w;  // exposed: 1 is the picture's white
       recorded.rgba32f = floats;
@@ -127,11 +131,12 @@ Result<void> render(const RenderOptions& options) {
   }
   if (auto finished = (*recorder)->finish(); !finished) return finished;
   if (want_stats) {
-    const auto json = to_json(stats, renderer.device, job->width, job->height, job->frames.end - job->frames.begin, drops_drawn,
-                              renderer.timer->gpu_times_are_real());
+    const auto json = to_json(stats, renderer.device, job->width, job->height, job->frames.end - job->frames.begin,
+                              drops_drawn, renderer.timer->gpu_times_are_real());
     if (auto written = write_whole_file(options.stats, json.dump(2) + "\n"); !written) return written;
   }
-  log_info("{} ({}x{}, {} frames)", job->target.file.string(), job->width, job->height, job->frames.end - job->frames.begin);
+  log_info("{} ({}x{}, {} frames)", job->target.file.string(), job->width, job->height,
+           job->frames.end - job->frames.begin);
   return {};
 }
 

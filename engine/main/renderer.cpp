@@ -26,7 +26,8 @@ Result<void> load_render_script(Renderer& renderer, const std::filesystem::path&
   if (!file) return tl::unexpected(file.error());
   ScriptOptions options;
   for (const auto& root : data_roots())
-    if (std::error_code ignored; std::filesystem::is_directory(root / "scripts", ignored)) options.roots.push_back(root / "scripts");
+    if (std::error_code ignored; std::filesystem::is_directory(root / "scripts", ignored))
+      options.roots.push_back(root / "scripts");
   std::vector<std::filesystem::path> files;
   const auto table = read_table(*file, options, &files);
   renderer.script_files = files;  // also after a failure: mending any of them is tried again
@@ -44,7 +45,9 @@ Result<const Texture*> draw(Renderer& renderer, Frame& frame, bool profile) {
   return picture;
 }
 
-std::int32_t affordable_drops(const DeviceInfo& device) { return device.software ? 35'000 : 10'000'000; }
+std::int32_t affordable_drops(const DeviceInfo& device) {
+  return device.software ? 35'000 : 10'000'000;
+}
 
 void read_picture(const Texture& texture, std::vector<std::uint8_t>& rgba8) {
   rgba8.resize(static_cast<std::size_t>(texture.width) * texture.height * 4);
@@ -55,7 +58,8 @@ void read_picture(const Texture& texture, std::vector<std::uint8_t>& rgba8) {
 void read_picture(const Texture& texture, std::vector<float>& rgba32f) {
   rgba32f.resize(static_cast<std::size_t>(texture.width) * texture.height * 4);
   glPixelStorei(GL_PACK_ALIGNMENT, 1);
-  glGetTextureImage(texture.id, 0, GL_RGBA, GL_FLOAT, static_cast<GLsizei>(rgba32f.size() * sizeof(float)), rgba32f.data());
+  glGetTextureImage(texture.id, 0, GL_RGBA, GL_FLOAT, static_cast<GLsizei>(rgba32f.size() * sizeof(float)),
+                    rgba32f.data());
 }
 
 }  // namespace petrichor

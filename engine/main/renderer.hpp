@@ -22,7 +22,7 @@ struct Renderer {
   std::unique_ptr<FrameGpu> frame_gpu;
   std::unique_ptr<Graph> graph;
   std::unique_ptr<FrameTimer> timer;
-  std::filesystem::path render_script;            // of the table the graph holds
+  std::filesystem::path render_script;              // of the table the graph holds
   std::vector<std::filesystem::path> script_files;  // it was read from these
 };
 

@@ -21,9 +21,16 @@ nlohmann::json to_json(const RunStats& stats, const DeviceInfo& device, int widt
   nlohmann::json passes = nlohmann::json::array();
   for (const std::string& name : stats.pass_order) {
     const auto& times = stats.pass_ms.at(name);
-    passes.push_back({{"name", name}, {"ms_median", quantile(times, 0.5)}, {"ms_p95", quantile(times, 0.95)}, {"runs", times.size()}});
+    passes.push_back({{"name", name},
+                      {"ms_median", quantile(times, 0.5)},
+                      {"ms_p95", quantile(times, 0.95)},
+                      {"runs", times.size()}});
   }
-  return {{"device", {{"renderer", device.renderer}, {"vendor", device.vendor}, {"version", device.version}, {"software", device.software}}},
+  return {{"device",
+           {{"renderer", device.renderer},
+            {"vendor", device.vendor},
+            {"version", device.version},
+            {"software", device.software}}},
           {"size", fmt::format("{}x{}", width, height)},
           {"frames", frames},
           {"start_to_first_frame_s", stats.start_to_first_frame_s},

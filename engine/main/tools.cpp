@@ -35,7 +35,11 @@ nlohmann::ordered_json number_or_text(const std::string& text) {
 nlohmann::ordered_json to_json(const std::vector<BenchRow>& rows) {
   nlohmann::ordered_json array = nlohmann::ordered_json::array();
   for (const BenchRow& row : rows) {
-    nlohmann::ordered_json item = {{"name", row.name}, {"n", number_or_text(row.n)}, {"size", row.size}, {"median", row.median_ms}, {"p95", row.p95_ms}};
+    nlohmann::ordered_json item = {{"name", row.name},
+                                   {"n", number_or_text(row.n)},
+                                   {"size", row.size},
+                                   {"median", row.median_ms},
+                                   {"p95", row.p95_ms}};
     if (row.gpu_median_ms) item["gpu_median"] = *row.gpu_median_ms;
     array.push_back(std::move(item));
   }
@@ -50,7 +54,8 @@ std::string row_lines(const nlohmann::ordered_json& array) {
 }
 
 // Which of the known names were asked for; all where none was.
-Result<std::vector<std::string>> pick(const std::vector<std::string>& asked, const std::vector<std::string>& known, const char* what) {
+Result<std::vector<std::string>> pick(const std::vector<std::string>& asked, const std::vector<std::string>& known,
+                                      const char* what) {
   for (const std::string& name : asked)
     if (std::find(known.begin(), known.end(), name) == known.end())
       return wrong_call(fmt::format("no {} is called '{}'; there are: {}", what, name, fmt::join(known, ", ")));
@@ -70,7 +75,8 @@ Result<void> bench(const BenchOptions& options) {
       auto renderer = open_renderer(false, {});
       if (!renderer) return tl::unexpected(renderer.error());
       log_info("{}", (*renderer)->device.renderer);
-      auto measured = bench_rain(options.drops, options.width, options.height, options.frames, (*renderer)->device.software);
+      auto measured =
+          bench_rain(options.drops, options.width, options.height, options.frames, (*renderer)->device.software);
       if (!measured) return tl::unexpected(measured.error());
       for (BenchRow& row : *measured) rows.push_back(std::move(row));
     }
@@ -99,8 +105,9 @@ Result<void> measure(const MeasureOptions& options) {
   auto renderer = open_renderer(false, {});
   if (!renderer) return tl::unexpected(renderer.error());
   Progress progress("raining", 1000);
-  const auto measured = measure_rain(options.rate_mm_per_hour, options.wind_mps, options.seconds, options.seed,
-                                     [&](double share) { progress.advance_to(static_cast<std::int64_t>(share * 1000.0)); });
+  const auto measured =
+      measure_rain(options.rate_mm_per_hour, options.wind_mps, options.seconds, options.seed,
+                   [&](double share) { progress.advance_to(static_cast<std::int64_t>(share * 1000.0)); });
   if (!measured) return tl::unexpected(measured.error());
   const nlohmann::ordered_json json = {{"asked_mm_per_hour", measured->asked_mm_per_hour},
                                        {"measured_mm_per_hour", measured->measured_mm_per_hour},
@@ -124,21 +131,30 @@ nlohmann::ordered_json describe() {
   all["version"] = PETRICHOR_VERSION;
   if (const auto context = make_headless_context({})) {
     const DeviceInfo device = (*context)->device();
-    all["device"] = {{"renderer", device.renderer}, {"vendor", device.vendor}, {"version", device.version}, {"software", device.software}};
+    all["device"] = {{"renderer", device.renderer},
+                     {"vendor", device.vendor},
+                     {"version", device.version},
+                     {"software", device.software}};
   } else {
     all["device"] = {{"error", context.error().message}};
   }
   for (const Schema& schema : component_schemas()) {
     nlohmann::ordered_json fields = nlohmann::ordered_json::array();
-    for (const Field& field : schema.fields) fields.push_back({{"name", field.name}, {"unit", field.unit}, {"meaning", field.meaning}});
+    for (const Field& field : schema.fields)
+      fields.push_back({{"name", field.name}, {"unit", field.unit}, {"meaning", field.meaning}});
     all["components"].push_back({{"name", schema.name}, {"meaning", schema.meaning}, {"fields", fields}});
   }
   for (const auto& system : all_systems())
-    all["systems"].push_back({{"name", system.name}, {"phase", phase_name(system.phase)}, {"reads", system.reads}, {"writes", system.writes}});
+    all["systems"].push_back({{"name", system.name},
+                              {"phase", phase_name(system.phase)},
+                              {"reads", system.reads},
+                              {"writes", system.writes}});
   for (const PassOffer& pass : all_passes()) {
     nlohmann::ordered_json slots = nlohmann::ordered_json::array();
     constexpr const char* access[] = {"read", "write", "modify"};
-    for (const Slot& slot : pass.slots) slots.push_back({{"name", slot.name}, {"access", access[static_cast<int>(slot.access)]}, {"optional", slot.optional}});
+    for (const Slot& slot : pass.slots)
+      slots.push_back(
+          {{"name", slot.name}, {"access", access[static_cast<int>(slot.access)]}, {"optional", slot.optional}});
     all["passes"].push_back({{"name", pass.name}, {"meaning", pass.meaning}, {"slots", slots}});
   }
   for (const Technique& technique : all_techniques())
@@ -149,7 +165,8 @@ nlohmann::ordered_json describe() {
 void print_for_people(const nlohmann::ordered_json& all) {
   const auto text = [](const nlohmann::ordered_json& value) { return value.get<std::string>(); };
   fmt::print("petrichor {}\n\nDevice\n", text(all["version"]));
-  for (const auto& [key, value] : all["device"].items()) fmt::print("  {}: {}\n", key, value.is_string() ? text(value) : value.dump());
+  for (const auto& [key, value] : all["device"].items())
+    fmt::print("  {}: {}\n", key, value.is_string() ? text(value) : value.dump());
   fmt::print("\nComponents\n");
   for (const auto& c : all["components"]) fmt::print("  {:<20} {}\n", text(c["name"]), text(c["meaning"]));
   fmt::print("\nSystems, in frame order\n");
@@ -157,7 +174,8 @@ void print_for_people(const nlohmann::ordered_json& all) {
   fmt::print("\nPasses on offer\n");
   for (const auto& p : all["passes"]) fmt::print("  {:<20} {}\n", text(p["name"]), text(p["meaning"]));
   fmt::print("\nTechniques\n");
-  for (const auto& l : all["ladders"]) fmt::print("  {:<20} {}\n", text(l["effect"]) + "=" + text(l["rung"]), text(l["meaning"]));
+  for (const auto& l : all["ladders"])
+    fmt::print("  {:<20} {}\n", text(l["effect"]) + "=" + text(l["rung"]), text(l["meaning"]));
 }
 
 Result<void> write_graph(const InfoOptions& options) {
@@ -182,8 +200,10 @@ Result<void> info(const InfoOptions& options) {
     return write_whole_file(options.reference, script_reference() + "\n" + schema_reference(component_schemas()));
   if (!options.graph.empty()) return write_graph(options);
   const auto all = describe();
-  if (options.json) std::puts(all.dump(2).c_str());
-  else print_for_people(all);
+  if (options.json)
+    std::puts(all.dump(2).c_str());
+  else
+    print_for_people(all);
   return {};
 }
 

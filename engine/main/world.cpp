@@ -21,7 +21,8 @@ namespace fs = std::filesystem;
 
 bool is_model(const fs::path& file) {
   std::string extension = file.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(), [](unsigned char c) { return std::tolower(c); });
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return std::tolower(c); });
   return extension == ".gltf" || extension == ".glb";
 }
 
@@ -47,7 +48,8 @@ nlohmann::json parse_value(const std::string& text) {
   return text;
 }
 
-Result<std::pair<glm::vec3, glm::vec3>> bounds_of(Registry& registry, const std::vector<std::shared_ptr<const Model>>& models,
+Result<std::pair<glm::vec3, glm::vec3>> bounds_of(Registry& registry,
+                                                  const std::vector<std::shared_ptr<const Model>>& models,
                                                   std::span<const Entity> entities) {
   propagate_transforms(registry);
   constexpr float infinity = std::numeric_limits<float>::infinity();
@@ -103,7 +105,9 @@ Result<std::unique_ptr<World>> World::open(const SubjectOptions& options, GpuSce
   script.seed = options.seed;
   World* self = world.get();
   script.services.load_model = [self](const fs::path& file) { return self->spawn(file); };
-  script.services.bounds = [self](std::span<const Entity> entities) { return bounds_of(self->registry_, self->models_, entities); };
+  script.services.bounds = [self](std::span<const Entity> entities) {
+    return bounds_of(self->registry_, self->models_, entities);
+  };
   script.services.set_parent = [self](Entity child, Entity parent) -> Result<void> {
     self->registry_.emplace_or_replace<Parent>(child, Parent{parent});
     return {};
@@ -129,7 +133,8 @@ Result<void> World::apply_options(const SubjectOptions& options) {
     const std::string target = text.substr(0, equals);
     const auto dot = target.find('.');
     if (dot == std::string::npos) return wrong_call(fmt::format("--set {}: expected component.field=value", text));
-    if (auto pinned = script_->pin(target.substr(0, dot), target.substr(dot + 1), parse_value(text.substr(equals + 1))); !pinned)
+    if (auto pinned = script_->pin(target.substr(0, dot), target.substr(dot + 1), parse_value(text.substr(equals + 1)));
+        !pinned)
       return wrong_call(fmt::format("--set {}: {}", text, pinned.error().message));
   }
   for (const std::string& text : options.techniques) {
@@ -204,9 +209,10 @@ void World::extract(Frame& frame, std::uint64_t number, double time_s, int width
   if (!has_camera()) {
     frame.camera.position_m = {0.0, 1.7, 0.0};
     if (!std::exchange(told_of_no_camera_, true))
-      log_warn("at {:.3f} s there is no active camera, so the scene is seen from 1.7 m above its origin; make one: "
-               "world.spawn{{ camera = {{}}, transform = {{ position_m = {{0, 1.7, 10}} }} }}",
-               time_s);
+      log_warn(
+          "at {:.3f} s there is no active camera, so the scene is seen from 1.7 m above its origin; make one: "
+          "world.spawn{{ camera = {{}}, transform = {{ position_m = {{0, 1.7, 10}} }} }}",
+          time_s);
   }
   SystemContext now = context();
   now.time_s = time_s;
@@ -215,6 +221,8 @@ void World::extract(Frame& frame, std::uint64_t number, double time_s, int width
   schedule_.run(now, registry_, commands_, Phase::extract, Phase::extract);
 }
 
-fs::path World::render_script() const { return cinematic().render.value_or("scripts/render/city.lua"); }
+fs::path World::render_script() const {
+  return cinematic().render.value_or("scripts/render/city.lua");
+}
 
 }  // namespace petrichor

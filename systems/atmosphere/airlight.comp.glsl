@@ -50,9 +50,10 @@ void main() {
       vec3 from_lamp = ray * x - lamp;
       float cosine = dot(from_lamp, light.direction_kind.xyz) * cosine_eta / h;  // |from_lamp| = h / cos(eta)
       float strength = spot_attenuation(cosine, light.cone_shadow.x, light.cone_shadow.y);
-      // Beyond frame.rain.y every drop is extinction; nearer, the drops draw themselves.
+      // Around frame.rain.y drops that draw themselves give way to extinction, class by class. The ramp stands for
+      // that; a step would show as discs about the lamps where a node of the quadrature crosses it.
       float far_rain = max(x - frame.rain.y, 0.0);
-      float scattering = frame.mist.x + frame.rain.z + (far_rain > 0.0 ? frame.rain.x : 0.0);
+      float scattering = frame.mist.x + frame.rain.z + frame.rain.x * smoothstep(0.4 * frame.rain.y, 1.6 * frame.rain.y + 0.001, x);
       glow += point.y * phase_hg(-sine, forward) * scattering * strength *
               exp(-near_extinction * airlight_path(sine, cosine_eta, c, h) - frame.rain.x * far_rain);
     }

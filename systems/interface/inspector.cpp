@@ -16,7 +16,9 @@ namespace petrichor {
 namespace {
 
 // ImGui compares with floats; an endless range becomes none.
-float bound(double value) { return static_cast<float>(std::clamp(value, -3e38, 3e38)); }
+float bound(double value) {
+  return static_cast<float>(std::clamp(value, -3e38, 3e38));
+}
 
 // The step of a drag: a thousandth of a bounded range, else of the value's size.
 float drag_speed(const Field& field, float value) {
@@ -50,19 +52,31 @@ bool edit_floats(const char* label, const Field& field, float* at, int count) {
 
 bool edit_field(const Field& field, void* component) {
   void* at = field.address(component);
-  const std::string label = field.unit.empty() ? std::string(field.name) : fmt::format("{} [{}]", field.name, field.unit);
+  const std::string label =
+      field.unit.empty() ? std::string(field.name) : fmt::format("{} [{}]", field.name, field.unit);
   bool changed = false;
   switch (field.type) {
-    case FieldType::boolean: changed = ImGui::Checkbox(label.c_str(), static_cast<bool*>(at)); break;
-    case FieldType::integer: changed = edit_integer(label.c_str(), field, at); break;
-    case FieldType::real:
-      if (field.size_bytes == sizeof(double)) changed = ImGui::DragScalar(label.c_str(), ImGuiDataType_Double, at, 0.01f);
-      else changed = edit_floats(label.c_str(), field, static_cast<float*>(at), 1);
+    case FieldType::boolean:
+      changed = ImGui::Checkbox(label.c_str(), static_cast<bool*>(at));
       break;
-    case FieldType::vec2: changed = edit_floats(label.c_str(), field, static_cast<float*>(at), 2); break;
-    case FieldType::vec3: changed = edit_floats(label.c_str(), field, static_cast<float*>(at), 3); break;
+    case FieldType::integer:
+      changed = edit_integer(label.c_str(), field, at);
+      break;
+    case FieldType::real:
+      if (field.size_bytes == sizeof(double))
+        changed = ImGui::DragScalar(label.c_str(), ImGuiDataType_Double, at, 0.01f);
+      else
+        changed = edit_floats(label.c_str(), field, static_cast<float*>(at), 1);
+      break;
+    case FieldType::vec2:
+      changed = edit_floats(label.c_str(), field, static_cast<float*>(at), 2);
+      break;
+    case FieldType::vec3:
+      changed = edit_floats(label.c_str(), field, static_cast<float*>(at), 3);
+      break;
     case FieldType::colour:
-      changed = ImGui::ColorEdit3(label.c_str(), static_cast<float*>(at), ImGuiColorEditFlags_Float | ImGuiColorEditFlags_HDR);
+      changed = ImGui::ColorEdit3(label.c_str(), static_cast<float*>(at),
+                                  ImGuiColorEditFlags_Float | ImGuiColorEditFlags_HDR);
       break;
     case FieldType::rotation: {
       auto* q = static_cast<glm::quat*>(at);
@@ -72,11 +86,14 @@ bool edit_field(const Field& field, void* component) {
       if (changed && glm::length(edited) > 1e-3f) *q = glm::normalize(edited);
       break;
     }
-    case FieldType::text: changed = ImGui::InputText(label.c_str(), static_cast<std::string*>(at)); break;
+    case FieldType::text:
+      changed = ImGui::InputText(label.c_str(), static_cast<std::string*>(at));
+      break;
     case FieldType::choice: {
       int chosen = 0;
       std::memcpy(&chosen, at, std::min(field.size_bytes, sizeof(chosen)));
-      const std::string shown = chosen >= 0 && chosen < static_cast<int>(field.choices.size()) ? std::string(field.choices[chosen]) : "?";
+      const std::string shown =
+          chosen >= 0 && chosen < static_cast<int>(field.choices.size()) ? std::string(field.choices[chosen]) : "?";
       if (ImGui::BeginCombo(label.c_str(), shown.c_str())) {
         for (int i = 0; i < static_cast<int>(field.choices.size()); ++i)
           if (ImGui::Selectable(std::string(field.choices[i]).c_str(), i == chosen)) {
@@ -95,7 +112,8 @@ bool edit_field(const Field& field, void* component) {
 std::string entity_label(Registry& registry, std::span<const Schema> schemas, Entity entity) {
   if (const auto* name = registry.find<Name>(entity); name && !name->text.empty()) return name->text;
   for (const Schema& schema : schemas)
-    if (schema.name != "transform" && schema.find(registry, entity)) return fmt::format("{} {}", schema.name, entity.bits);
+    if (schema.name != "transform" && schema.find(registry, entity))
+      return fmt::format("{} {}", schema.name, entity.bits);
   return fmt::format("entity {}", entity.bits);
 }
 
@@ -117,7 +135,9 @@ int draw_inspector(Registry& registry, std::span<const Schema> schemas, Inspecto
       const std::string label = entity_label(registry, schemas, entity);
       if (!schema_fits && label.find(filter) == std::string::npos) continue;
       if (!listed.insert(entity.bits).second) continue;
-      if (ImGui::Selectable(fmt::format("{}: {}##{}", schema.name, label, entity.bits).c_str(), entity == state.selected)) state.selected = entity;
+      if (ImGui::Selectable(fmt::format("{}: {}##{}", schema.name, label, entity.bits).c_str(),
+                            entity == state.selected))
+        state.selected = entity;
     }
   }
   ImGui::EndChild();

@@ -18,9 +18,11 @@ void draw_times(const OverlayInfo& info) {
     if (!sorted.empty()) {
       const float median = sorted[sorted.size() / 2], p95 = sorted[sorted.size() * 95 / 100];
       ImGui::Text("%.2f ms a frame (p95 %.2f), %.0f a second", median, p95, 1000.0f / std::max(median, 1e-3f));
-      ImGui::PlotLines("##frames", info.frame_ms.data(), static_cast<int>(info.frame_ms.size()), 0, nullptr, 0.0f, std::max(p95 * 1.5f, 1.0f), ImVec2(280, 50));
+      ImGui::PlotLines("##frames", info.frame_ms.data(), static_cast<int>(info.frame_ms.size()), 0, nullptr, 0.0f,
+                       std::max(p95 * 1.5f, 1.0f), ImVec2(280, 50));
     }
-    ImGui::Text("rain %.1f mm/h, %llu drops drawn", info.rain_mm_per_hour, static_cast<unsigned long long>(info.drops_drawn));
+    ImGui::Text("rain %.1f mm/h, %llu drops drawn", info.rain_mm_per_hour,
+                static_cast<unsigned long long>(info.drops_drawn));
     ImGui::TextUnformatted(info.device.c_str());
     ImGui::Separator();
     for (const Timing& pass : info.pass_ms) ImGui::Text("%8.3f ms  %s", pass.milliseconds, pass.name.c_str());
@@ -60,10 +62,15 @@ Interface::~Interface() {
   ImGui::DestroyContext();
 }
 
-bool Interface::wants_mouse() const { return ImGui::GetIO().WantCaptureMouse; }
-bool Interface::wants_keyboard() const { return ImGui::GetIO().WantCaptureKeyboard; }
+bool Interface::wants_mouse() const {
+  return ImGui::GetIO().WantCaptureMouse;
+}
+bool Interface::wants_keyboard() const {
+  return ImGui::GetIO().WantCaptureKeyboard;
+}
 
-void Interface::draw(InterfaceState& state, const OverlayInfo& info, Registry& registry, std::span<const Schema> schemas) {
+void Interface::draw(InterfaceState& state, const OverlayInfo& info, Registry& registry,
+                     std::span<const Schema> schemas) {
   ImGui_ImplOpenGL3_NewFrame();
   ImGui_ImplGlfw_NewFrame();
   ImGui::NewFrame();

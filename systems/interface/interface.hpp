@@ -15,8 +15,8 @@ namespace petrichor {
 
 struct OverlayInfo {
   std::string device;
-  std::vector<float> frame_ms;   // the last ones, oldest first
-  std::vector<Timing> pass_ms;   // of the newest frame that is known
+  std::vector<float> frame_ms;  // the last ones, oldest first
+  std::vector<Timing> pass_ms;  // of the newest frame that is known
   std::uint64_t drops_drawn = 0;
   float rain_mm_per_hour = 0.0f;
 };

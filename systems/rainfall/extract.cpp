@@ -25,7 +25,9 @@ void fit_distance(FrameRain& rain, const FrameCamera& camera, int width, int hei
   // Integral of r^2 times a fade that is linear from fade_share to 1, times the solid angle, at distance 1.
   const double volume = solid_angle * (1.0 - std::pow(fade_share, 4)) / (12.0 * (1.0 - fade_share));
   const double asked = std::max(0.0f, rain.asked_distance_m), most = std::max(0, rain.maximum_drops);
-  const auto distance_of = [&](const RainClass& c, double metres_per_mm) { return std::min(asked, metres_per_mm * c.diameter_mm); };
+  const auto distance_of = [&](const RainClass& c, double metres_per_mm) {
+    return std::min(asked, metres_per_mm * c.diameter_mm);
+  };
   const auto drops = [&](double metres_per_mm) {
     double sum = 0.0;
     for (const RainClass& c : rain.classes)

@@ -10,8 +10,8 @@ namespace petrichor {
 namespace {
 
 constexpr float gravity_mps2 = 9.81f;
-constexpr float highest_step_m = 0.4f;    // kerbs and stairs are climbed, walls are not
-constexpr float jump_mps = 3.2f;          // half a metre high
+constexpr float highest_step_m = 0.4f;  // kerbs and stairs are climbed, walls are not
+constexpr float jump_mps = 3.2f;        // half a metre high
 constexpr float fastest_fall_mps = 55.0f;
 constexpr float steepest_floor_cos = 0.6f;  // 53 degrees
 constexpr float world_bottom_m = -200.0f;
@@ -30,7 +30,8 @@ glm::vec3 wanted_direction(const PlayerInput& input, const glm::quat& facing) {
 
 // How far the body may go along a level unit direction before it touches something, and what it touches: rays
 // at shin, waist and head height, through its middle and both its sides.
-std::optional<RayHit> touch(const CollisionScene& scene, const Walker& walker, const glm::vec3& feet_m, const glm::vec3& direction, float reach_m) {
+std::optional<RayHit> touch(const CollisionScene& scene, const Walker& walker, const glm::vec3& feet_m,
+                            const glm::vec3& direction, float reach_m) {
   const glm::vec3 side(-direction.z, 0.0f, direction.x);
   std::optional<RayHit> nearest;
   for (const float height_m : {highest_step_m + 0.05f, 0.5f * walker.eye_height_m, walker.eye_height_m})
@@ -39,7 +40,8 @@ std::optional<RayHit> touch(const CollisionScene& scene, const Walker& walker, c
       const auto hit = scene.cast(from, direction, reach_m + walker.radius_m);
       // A body is round: its side stands back from its front.
       const float front_m = walker.radius_m * std::sqrt(1.0f - across * across);
-      if (hit && (!nearest || hit->distance_m - front_m < nearest->distance_m)) nearest = RayHit{hit->distance_m - front_m, hit->normal};
+      if (hit && (!nearest || hit->distance_m - front_m < nearest->distance_m))
+        nearest = RayHit{hit->distance_m - front_m, hit->normal};
     }
   if (nearest && nearest->distance_m > reach_m) nearest.reset();
   return nearest;
@@ -79,13 +81,15 @@ glm::vec3 push_out(const CollisionScene& scene, const Walker& walker, glm::vec3 
 }
 
 // Height of the floor under the feet, looking from a step above them.
-std::optional<float> floor_under(const CollisionScene& scene, const Walker& walker, const glm::vec3& feet_m, float down_m) {
+std::optional<float> floor_under(const CollisionScene& scene, const Walker& walker, const glm::vec3& feet_m,
+                                 float down_m) {
   std::optional<float> highest_m;
   const float r = 0.5f * walker.radius_m;
   for (const glm::vec2 at : {glm::vec2(0, 0), glm::vec2(r, 0), glm::vec2(-r, 0), glm::vec2(0, r), glm::vec2(0, -r)}) {
     const glm::vec3 from = feet_m + glm::vec3(at.x, highest_step_m, at.y);
     const auto hit = scene.cast(from, glm::vec3(0, -1, 0), highest_step_m + down_m);
-    if (hit && hit->normal.y >= steepest_floor_cos) highest_m = std::max(highest_m.value_or(-1e30f), from.y - hit->distance_m);
+    if (hit && hit->normal.y >= steepest_floor_cos)
+      highest_m = std::max(highest_m.value_or(-1e30f), from.y - hit->distance_m);
   }
   return highest_m;
 }
@@ -123,7 +127,8 @@ void step_walker(Walker& walker, Transform& eye, const PlayerInput& input, const
   }
 
   const glm::vec3 feet_before = eye.position_m - glm::vec3(0, walker.eye_height_m, 0);
-  glm::vec3 feet = move_level(*scene, walker, feet_before, glm::vec3(walker.velocity_mps.x, 0.0f, walker.velocity_mps.z) * dt);
+  glm::vec3 feet =
+      move_level(*scene, walker, feet_before, glm::vec3(walker.velocity_mps.x, 0.0f, walker.velocity_mps.z) * dt);
   feet = push_out(*scene, walker, feet);
 
   const bool rising = walker.velocity_mps.y > 0.0f;
@@ -137,15 +142,16 @@ void step_walker(Walker& walker, Transform& eye, const PlayerInput& input, const
     walker.on_ground = true;
   } else {
     walker.on_ground = false;
-    if (rising && scene->cast(feet + glm::vec3(0, walker.eye_height_m, 0), glm::vec3(0, 1, 0), 0.15f - fall_m)) walker.velocity_mps.y = 0.0f;
-    else feet.y -= fall_m;
+    if (rising && scene->cast(feet + glm::vec3(0, walker.eye_height_m, 0), glm::vec3(0, 1, 0), 0.15f - fall_m))
+      walker.velocity_mps.y = 0.0f;
+    else
+      feet.y -= fall_m;
   }
   // Outside every floor there is nothing to fall on: stop and let the person fly back.
   if (feet.y < world_bottom_m) {
     walker.flying = true;
     walker.velocity_mps = glm::vec3(0.0f);
   }
-
 
   eye.position_m = feet + glm::vec3(0, walker.eye_height_m, 0);
 }

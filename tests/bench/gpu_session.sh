@@ -12,8 +12,9 @@ for case in "38000000 1280x720" "5000000 1280x1024" "200000 1280x720"; do
   $run bench rain --drops "$1" --size "$2" --frames 120
 done
 film=scripts/cinematics/first_rain.lua
-$run render $film --size 1280x720 --frames 200:320 --set emitter.rain_mm_per_hour=50 --out "$out/f%04d.png" --stats "$out/downpour.json"
-$run render $film --size 1280x720 --frames 200:320 --set emitter.rain_mm_per_hour=0 --out "$out/d%04d.png" --stats "$out/dry.json"
-for stats in downpour dry; do echo "$stats"; cat "$out/$stats.json"; done
-rm -f "$out"/f02[1-9]*.png "$out"/f03*.png "$out"/d02[1-9]*.png "$out"/d03*.png "$out"/f020[1-9].png "$out"/d020[1-9].png
+for rain in 50 0; do
+  $run render $film --size 1280x720 --frames 200:230 --set emitter.rain_mm_per_hour=$rain --out "$out/rain$rain%04d.png" --stats "$out/city$rain.json"
+  cat "$out/city$rain.json"
+done
+rm -f "$out"/rain*02[0-2][1-9].png "$out"/rain*0220.png
 for rate in 0.5 10 100; do $run measure rain --rate $rate; done

@@ -25,7 +25,8 @@ TEST_P(Golden, LooksAsItDid) {
   const Shot& shot = GetParam();
   const fs::path golden = fs::path(PETRICHOR_SOURCE_DIR) / "tests/golden" / (std::string(shot.name) + ".png");
   const fs::path made = fs::path(PETRICHOR_BINARY_DIR) / "tests" / (std::string(shot.name) + ".png");
-  const std::string command = "\"" PETRICHOR_BINARY_DIR "/petrichor\" render --size 240x136 --set emitter.maximum_drops=20000 --out \"" +
+  const std::string command = "\"" PETRICHOR_BINARY_DIR
+                              "/petrichor\" render --size 240x136 --set emitter.maximum_drops=20000 --out \"" +
                               made.string() + "\" " + shot.arguments + " 2>&1";
   ASSERT_EQ(std::system(command.c_str()), 0) << command;
   if (std::getenv("PETRICHOR_UPDATE_GOLDEN")) {
@@ -36,16 +37,19 @@ TEST_P(Golden, LooksAsItDid) {
   ASSERT_TRUE(expected.has_error() == false && expected.spec().width == 240) << golden << ": " << expected.geterror();
   OIIO::ImageBufAlgo::CompareResults result;
   const int different = OIIO::ImageBufAlgo::compare_Yee(actual, expected, result, 100.0f, 45.0f);
-  EXPECT_LT(different, 240 * 136 / 50) << "more than 2% of the pixels visibly differ: compare " << made << " with " << golden;
+  EXPECT_LT(different, 240 * 136 / 50) << "more than 2% of the pixels visibly differ: compare " << made << " with "
+                                       << golden;
   // Yee's metric forgives an even shift of brightness; this does not.
   const auto a = OIIO::ImageBufAlgo::computePixelStats(actual), b = OIIO::ImageBufAlgo::computePixelStats(expected);
   for (int c = 0; c < 3; ++c) EXPECT_NEAR(a.avg[c], b.avg[c], 0.02) << "channel " << c;
 }
 
-INSTANTIATE_TEST_SUITE_P(Pictures, Golden,
-                         testing::Values(Shot{"first_rain_downpour", "scripts/cinematics/first_rain.lua --frames 210:211"},
-                                         Shot{"first_rain_dry", "scripts/cinematics/first_rain.lua --frames 210:211 --set emitter.rain_mm_per_hour=0"},
-                                         Shot{"crossing", "scripts/scenes/city.lua --frames 24:25"}),
-                         [](const auto& info) { return std::string(info.param.name); });
+INSTANTIATE_TEST_SUITE_P(
+    Pictures, Golden,
+    testing::Values(Shot{"first_rain_downpour", "scripts/cinematics/first_rain.lua --frames 210:211"},
+                    Shot{"first_rain_dry",
+                         "scripts/cinematics/first_rain.lua --frames 210:211 --set emitter.rain_mm_per_hour=0"},
+                    Shot{"crossing", "scripts/scenes/city.lua --frames 24:25"}),
+    [](const auto& info) { return std::string(info.param.name); });
 
 }  // namespace

@@ -31,7 +31,8 @@ std::vector<Include> all_includes() {
       std::string text;
       std::smatch match;
       for (int line = 1; std::getline(file, text); ++line)
-        if (std::regex_search(text, match, pattern)) found.push_back({fs::relative(entry.path(), root).string(), match[1], line});
+        if (std::regex_search(text, match, pattern))
+          found.push_back({fs::relative(entry.path(), root).string(), match[1], line});
     }
   return found;
 }
@@ -74,7 +75,8 @@ TEST(House, IncludesFollowTheEdges) {
     if (to.empty() || from == to || from == "main") continue;
     const auto edges = allowed.find(from);
     ASSERT_NE(edges, allowed.end()) << i.from << ": the box '" << from << "' is not in the plan of the house";
-    EXPECT_TRUE(edges->second.count(to)) << i.from << ":" << i.line << ": " << from << " must not include " << to << " (" << i.to << ")";
+    EXPECT_TRUE(edges->second.count(to)) << i.from << ":" << i.line << ": " << from << " must not include " << to
+                                         << " (" << i.to << ")";
   }
 }
 
@@ -91,9 +93,14 @@ TEST(House, LibrariesStayBehindTheirWalls) {
     const char* prefix;
     std::set<std::string> boxes;
   };
-  const std::vector<Wall> walls = {{"lua", {"script"}},          {"tiny_gltf", {"assets"}},    {"OpenImageIO/", {"assets", "app", "systems"}},
-                                   {"GLFW/", {"platform", "systems", "main"}}, {"CLI/", {"app"}}, {"epoxy/egl", {"platform"}},
-                                   {"imgui", {"systems"}},       {"embree", {"systems"}}};
+  const std::vector<Wall> walls = {{"lua", {"script"}},
+                                   {"tiny_gltf", {"assets"}},
+                                   {"OpenImageIO/", {"assets", "app", "systems"}},
+                                   {"GLFW/", {"platform", "systems", "main"}},
+                                   {"CLI/", {"app"}},
+                                   {"epoxy/egl", {"platform"}},
+                                   {"imgui", {"systems"}},
+                                   {"embree", {"systems"}}};
   for (const Include& i : all_includes())
     for (const Wall& wall : walls) {
       if (i.to.rfind(wall.prefix, 0) != 0) continue;
@@ -102,7 +109,8 @@ TEST(House, LibrariesStayBehindTheirWalls) {
 }
 
 TEST(House, TopLevelFoldersAreTheAgreedOnes) {
-  const std::set<std::string> agreed = {"engine", "systems", "components", "scripts", "content", "tests", "docs", "out"};
+  const std::set<std::string> agreed = {"engine",  "systems", "components", "scripts",
+                                        "content", "tests",   "docs",       "out"};
   for (const auto& entry : fs::directory_iterator(root)) {
     const std::string name = entry.path().filename().string();
     if (!entry.is_directory() || name[0] == '.' || name.rfind("build", 0) == 0) continue;

@@ -17,7 +17,8 @@ std::vector<SystemAccess> accesses() {
 
 TEST(Systems, NoTwoOfAPhaseConflictUnordered) {
   for (const Conflict& conflict : conflicts(accesses()))
-    ADD_FAILURE() << conflict.first << " and " << conflict.second << " both touch " << conflict.what << ", and nothing says in which order";
+    ADD_FAILURE() << conflict.first << " and " << conflict.second << " both touch " << conflict.what
+                  << ", and nothing says in which order";
 }
 
 TEST(Systems, TheListHasNoSlips) {

@@ -13,8 +13,9 @@ ParsedCommandLine parse(std::vector<std::string> words) {
 }
 
 TEST(Options, RenderTakesEverything) {
-  const auto parsed = parse({"render", "a.lua", "--size", "640x360", "--fps", "30", "--frames", "10:20", "--out", "f%04d.png", "--set",
-                             "emitter.rain_mm_per_hour=50", "--set", "wind.gust_mps=2", "--seed", "9", "--stats", "s.json"});
+  const auto parsed =
+      parse({"render", "a.lua", "--size", "640x360", "--fps", "30", "--frames", "10:20", "--out", "f%04d.png", "--set",
+             "emitter.rain_mm_per_hour=50", "--set", "wind.gust_mps=2", "--seed", "9", "--stats", "s.json"});
   ASSERT_TRUE(parsed.options);
   const auto& render = std::get<RenderOptions>(*parsed.options);
   EXPECT_EQ(render.width, 640);
@@ -28,11 +29,24 @@ TEST(Options, RenderTakesEverything) {
 }
 
 TEST(Options, WrongCallsExitWithTwo) {
-  for (const std::vector<std::string>& words : std::vector<std::vector<std::string>>{
-           {}, {"rain"}, {"render"}, {"render", "a.lua", "--size", "640"}, {"render", "a.lua", "--size", "0x4"},
-           {"render", "a.lua", "--size", "99999x4"}, {"render", "a.lua", "--frames", "5:5"}, {"render", "a.lua", "--frames", "-1:5"},
-           {"render", "a.lua", "--set", "novalue"}, {"render", "a.lua", "--fps", "0"}, {"render", "a.lua", "--fps", "nan"}, {"render", "a.lua", "--fps", "ten"}, {"render", "a.lua", "--nonsense"},
-           {"measure"}, {"measure", "rain", "--rate", "-1"}, {"measure", "rain", "--rate", "nan"}, {"bench", "--drops", "0"}}) {
+  for (const std::vector<std::string>& words :
+       std::vector<std::vector<std::string>>{{},
+                                             {"rain"},
+                                             {"render"},
+                                             {"render", "a.lua", "--size", "640"},
+                                             {"render", "a.lua", "--size", "0x4"},
+                                             {"render", "a.lua", "--size", "99999x4"},
+                                             {"render", "a.lua", "--frames", "5:5"},
+                                             {"render", "a.lua", "--frames", "-1:5"},
+                                             {"render", "a.lua", "--set", "novalue"},
+                                             {"render", "a.lua", "--fps", "0"},
+                                             {"render", "a.lua", "--fps", "nan"},
+                                             {"render", "a.lua", "--fps", "ten"},
+                                             {"render", "a.lua", "--nonsense"},
+                                             {"measure"},
+                                             {"measure", "rain", "--rate", "-1"},
+                                             {"measure", "rain", "--rate", "nan"},
+                                             {"bench", "--drops", "0"}}) {
     testing::internal::CaptureStderr();
     const auto parsed = parse(words);
     const std::string said = testing::internal::GetCapturedStderr();

@@ -25,7 +25,9 @@ struct Recording : testing::Test {
 };
 
 // Red at the top, green at the bottom; rows from the bottom as OpenGL gives them.
-std::vector<std::uint8_t> two_rows() { return {0, 255, 0, 255, 0, 255, 0, 255, 255, 0, 0, 255, 255, 0, 0, 255}; }
+std::vector<std::uint8_t> two_rows() {
+  return {0, 255, 0, 255, 0, 255, 0, 255, 255, 0, 0, 255, 255, 0, 0, 255};
+}
 
 TEST_F(Recording, PngHasTheTopRowFirst) {
   const auto pixels = two_rows();
@@ -63,7 +65,8 @@ TEST_F(Recording, ExrKeepsLightBeyondWhite) {
 TEST_F(Recording, PatternsAreChecked) {
   EXPECT_TRUE(record_target("f%04d.png", 100));
   EXPECT_TRUE(record_target("f%d.exr", 100));
-  for (const char* bad : {"f%s.png", "f%04d%04d.png", "f%n.png", "f%.png", "f%99999d.png", "film%d.mp4", "film", "film.txt"})
+  for (const char* bad :
+       {"f%s.png", "f%04d%04d.png", "f%n.png", "f%.png", "f%99999d.png", "film%d.mp4", "film", "film.txt"})
     EXPECT_FALSE(record_target(bad, 2)) << bad;
   EXPECT_FALSE(record_target("one.png", 2));
   EXPECT_EQ(numbered_file("a/f%04d.png", 17), fs::path("a/f0017.png"));

@@ -21,7 +21,8 @@ struct Course {
     const auto base = static_cast<std::uint32_t>(p.vertices.size());
     for (int i = 0; i < 8; ++i)
       p.vertices.push_back({{i & 1 ? high.x : low.x, i & 2 ? high.y : low.y, i & 4 ? high.z : low.z}});
-    for (const std::uint32_t i : {0, 2, 1, 1, 2, 3, 4, 5, 6, 5, 7, 6, 0, 1, 4, 1, 5, 4, 2, 6, 3, 3, 6, 7, 0, 4, 2, 2, 4, 6, 1, 3, 5, 3, 7, 5})
+    for (const std::uint32_t i :
+         {0, 2, 1, 1, 2, 3, 4, 5, 6, 5, 7, 6, 0, 1, 4, 1, 5, 4, 2, 6, 3, 3, 6, 7, 0, 4, 2, 2, 4, 6, 1, 3, 5, 3, 7, 5})
       p.indices.push_back(base + i);
   }
 
@@ -33,8 +34,12 @@ struct Course {
   }
 };
 
-Transform at(float x, float feet_y, float z) { return Transform{{x, feet_y + Walker{}.eye_height_m, z}}; }
-float feet(const Transform& eye) { return eye.position_m.y - Walker{}.eye_height_m; }
+Transform at(float x, float feet_y, float z) {
+  return Transform{{x, feet_y + Walker{}.eye_height_m, z}};
+}
+float feet(const Transform& eye) {
+  return eye.position_m.y - Walker{}.eye_height_m;
+}
 
 TEST(Walk, GravityLandsOnTheFloor) {
   Course course;
@@ -72,7 +77,8 @@ TEST(Walk, NoWayThroughWallsAtAnyAngleOrSpeed) {
       input.up = direction % 3 == 0;  // jumping all the way
       for (int i = 0; i < 1200; ++i) {
         step_walker(walker, eye, input, scene.get(), step_s);
-        ASSERT_LT(std::max(std::abs(eye.position_m.x), std::abs(eye.position_m.z)), 5.0f - 0.1f) << "heading " << walker.yaw_deg;
+        ASSERT_LT(std::max(std::abs(eye.position_m.x), std::abs(eye.position_m.z)), 5.0f - 0.1f)
+            << "heading " << walker.yaw_deg;
       }
     }
 }
