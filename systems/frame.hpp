@@ -41,7 +41,7 @@ struct FrameLight {
   float range_m;         // 0: none given
   float inner_cone_rad, outer_cone_rad;
   float source_radius_m;
-  int kind;              // LIGHT_*
+  int kind;  // LIGHT_*
   bool casts_shadow, lights_rain;
   int shadow_slot = -1;  // in the shadow maps; set by whoever draws them before the lights are uploaded
 };
@@ -70,10 +70,10 @@ struct Frame {
   // Changes whenever an instance (or its matrix) or a shadow-casting light changes: cached maps compare it.
   std::uint64_t geometry_version = 0;
   std::uint64_t lights_version = 0;
-  std::optional<FrameRain> rain;  // absent, or its rate 0: no rain pass runs
+  std::optional<FrameRain> rain;            // absent, or its rate 0: no rain pass runs
   std::int32_t affordable_drops = 4000000;  // for an emitter that names no budget of its own
   GpuScene* scene = nullptr;
-  FrameUniforms uniforms{};       // filled last, by finish_frame (systems/frame_gpu.hpp)
+  FrameUniforms uniforms{};  // filled last, by finish_frame (systems/frame_gpu.hpp)
 };
 
 }  // namespace petrichor

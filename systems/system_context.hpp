@@ -33,7 +33,7 @@ struct SystemContext {
   double interpolation = 1.0;  // extract: where the frame stands between the last two ticks, 1: at the newer
   PlayerInput input;
   const std::vector<std::shared_ptr<const Model>>& models;  // MeshInstance::model is an index here
-  CollisionScene* collision = nullptr;                // where somebody walks
+  CollisionScene* collision = nullptr;                      // where somebody walks
   std::function<Result<void>(double time_s)> advance_script;
   Result<void> script_result;  // of the last tick
   Frame* frame = nullptr;      // extract only

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <map>
 #include <optional>
 #include <string>
@@ -38,17 +39,23 @@ void add_lamps(Frame& frame) {
 
 Result<std::vector<BenchRow>> bench_rain(int drops, int width, int height, int frames, bool software_gl) {
   Emitter emitter;
-  emitter.maximum_drops = drops;
-  emitter.drawn_distance_m = 500.0f;
+  emitter.maximum_drops = 400'000'000;  // no budget: every drop to a distance that holds so many
+  emitter.rain_mm_per_hour = 10.0f;
   Wind wind;
   wind.velocity_mps = {1.0f, 0.0f, 0.0f};
   const WindMotion motion = start_rain_motion(emitter, wind);
   const Frame view = stage_frame(width, height);
-  emitter.rain_mm_per_hour = 10.0f;
-  while (emitter.rain_mm_per_hour < 50.0f &&
-         make_frame_rain(emitter, motion, view.camera, width, height, 0.0).drawn_distance_m > 30.0f) {
+  const auto distance_of_drops = [&] {
+    emitter.drawn_distance_m = 5.0f;
+    const FrameRain near = make_frame_rain(emitter, motion, view.camera, width, height, 0.0);
+    return 5.0f * std::cbrt(static_cast<float>(drops) / near.expected_drops);
+  };
+  float distance_m = distance_of_drops();
+  while (emitter.rain_mm_per_hour < 50.0f && distance_m > 30.0f) {
     emitter.rain_mm_per_hour += 1.0f;
+    distance_m = distance_of_drops();
   }
+  emitter.drawn_distance_m = distance_m;
   const std::string n = std::to_string(drops), size = std::to_string(width) + "x" + std::to_string(height);
 
   std::vector<BenchRow> rows;

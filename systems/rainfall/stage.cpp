@@ -24,8 +24,8 @@ PassOffer backdrop_offer(const StageSet& set) {
       glClearTexImage(context.texture("depth").id, 0, GL_DEPTH_COMPONENT, GL_FLOAT, &depth);
     }
     if (set.wall_distance_m == 0.0f || !set.fog) {
-      const glm::vec4 wall(set.wall_cd_m2, 1.0f);
-      glClearTexImage(context.texture("colour").id, 0, GL_RGBA, GL_FLOAT, &wall.x);
+      const glm::vec3& wall = set.wall_cd_m2;
+      clear_texture(context.texture("colour"), {wall.r, wall.g, wall.b, 1.0f});
       return;
     }
     if (optics->bytes == 0) upload(*optics, std::span<const float>(make_drop_phase()));

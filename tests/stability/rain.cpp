@@ -59,8 +59,8 @@ Frame frame_of(const View& view, double time_s) {
 
 // Every drop to `drawn_m`.
 void rain_on(Frame& frame, const Emitter& emitter, float drawn_m) {
-  frame.rain = make_frame_rain(emitter, start_rain_motion(emitter, {}), frame.camera, frame.width, frame.height,
-                               frame.time_s);
+  frame.rain =
+      make_frame_rain(emitter, start_rain_motion(emitter, {}), frame.camera, frame.width, frame.height, frame.time_s);
   frame.rain->fade_start_m = drawn_m;
   frame.rain->drawn_distance_m = drawn_m * 1.001f;
 }

@@ -138,7 +138,8 @@ TEST(DropField, DistanceShrinksToTheBudget) {
   float small = 0.0f, large = 0.0f;  // how far they are drawn
   for (const RainClass& c : capped.classes) {
     if (!c.drawn) continue;
-    (c.diameter_mm < 1.0f ? small : large) = std::max(c.diameter_mm < 1.0f ? small : large, c.reach * capped.drawn_distance_m);
+    (c.diameter_mm < 1.0f ? small : large) =
+        std::max(c.diameter_mm < 1.0f ? small : large, c.reach * capped.drawn_distance_m);
   }
   EXPECT_LT(small, 10.0f);
   EXPECT_GT(large, small) << "what can be seen farther is drawn farther";

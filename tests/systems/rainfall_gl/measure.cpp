@@ -66,8 +66,7 @@ TEST_F(RainMeasure, AgreesDropByDropWithTheFieldOnTheCpu) {
   Emitter emitter;
   emitter.rain_mm_per_hour = 20.0f;
   constexpr double seconds = 0.4;
-  const FrameRain rain =
-      make_frame_rain(emitter, start_rain_motion(emitter, {}), FrameCamera{}, 160, 90, seconds);
+  const FrameRain rain = make_frame_rain(emitter, start_rain_motion(emitter, {}), FrameCamera{}, 160, 90, seconds);
   double counted = 0.0;
   for (const FieldDrop& d : drops_in(rain, glm::dvec3(0.0), {glm::dvec3(-5.0, -4.0, -5.0), glm::dvec3(5.0, 1e-9, 5.0)}))
     counted += d.position_m.y > -seconds * rain.classes[d.cls].fall_speed_mps;
