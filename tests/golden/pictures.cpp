@@ -49,7 +49,9 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(Shot{"first_rain_downpour", "scripts/cinematics/first_rain.lua --frames 210:211"},
                     Shot{"first_rain_dry",
                          "scripts/cinematics/first_rain.lua --frames 210:211 --set emitter.rain_mm_per_hour=0"},
-                    Shot{"crossing", "scripts/scenes/city.lua --frames 24:25"}),
+                    Shot{"crossing", "scripts/scenes/city.lua --frames 24:25"},
+                    // Three seconds on: who falls through the street sees nothing.
+                    Shot{"sandbox", "scripts/sandbox.lua --frames 72:73"}),
     [](const auto& info) { return std::string(info.param.name); });
 
 }  // namespace
