@@ -148,12 +148,11 @@ TEST_F(RainPicture, FogAndFieldHaveTheSameMean) {
     for (const float distance : {0.0f, 3.0f, 8.0f, 20.0f, 30.0f}) {
       Emitter e = emitter;
       e.drawn_distance_m = distance;
-      e.maximum_drops = 2000000;
+      e.maximum_drops =
+          400000000;  // no budget: all classes reach equally far; BudgetShrinksTheField has the other case
       const Seen seen = look(*s, e, 40.0f, 1.0f / 60, 3);
       EXPECT_NEAR(seen.mean, truth, 0.005) << rate << " mm/h, drawn to " << distance << " m";
-      // Under a budget classes end at different distances, and fog starts for all at their mean: a wall among these
-      // distances lacks some of it.
-      EXPECT_NEAR(seen.mean, truth, 0.12 * (1.0 - truth)) << rate << " mm/h, drawn to " << distance << " m";
+      EXPECT_NEAR(seen.mean, truth, 0.08 * (1.0 - truth)) << rate << " mm/h, drawn to " << distance << " m";
     }
   }
 }
