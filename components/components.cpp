@@ -7,6 +7,7 @@ namespace {
 
 using std::string_view;
 constexpr std::array<string_view, 2> drop_sizes{"marshall_palmer", "gamma"};
+constexpr std::array<string_view, 5> cone_textures{"automatic", "drizzle", "rain", "snow_fine", "snow_coarse"};
 constexpr std::array<string_view, 3> light_kinds{"point", "spot", "directional"};
 constexpr Range any{};
 constexpr Range positive{0.0, 1e9};
@@ -51,6 +52,43 @@ std::vector<Schema> make_schemas() {
                "maximum_drops", "", {0, 400000000},
                "Budget of drops, to which the drawn distance shrinks; 0: what the device affords."),
            field<&Emitter::seed>("seed", "", {0, 4294967295.0}, "Which rain of all possible rains.")}),
+      schema<DoubleCone>(
+          "double_cone", "Settings of the technique rainfall=double_cone (Wang and Wade 2004); every emitter has them.",
+          {field<&DoubleCone::published>("published", "", any, "As printed, with what is known to break."),
+           field<&DoubleCone::camera_damping>("camera_damping", "", {0, 2},
+                                              "C_f: how much the camera's own speed tilts the rain; 1 is true."),
+           field<&DoubleCone::scroll_speed>("scroll_speed", "", {0, 10}, "S_f: speed of the scroll; 1 is true."),
+           field<&DoubleCone::streak_length>("streak_length", "", {0, 10}, "S_streak: length of streaks; 1 is true."),
+           field<&DoubleCone::texture>("texture", "", any, "Which texture; automatic goes by the rate.", cone_textures)}),
+      schema<LayeredComposite>(
+          "layered_composite",
+          "Settings of the technique rainfall=composite (Tatarchuk and Isidoro 2006); every emitter has them.",
+          {field<&LayeredComposite::published>("published", "", any, "As printed, with what is known to break."),
+           field<&LayeredComposite::direction>("direction", "m/s", {-80, 80}, "Added to the rain's own velocity."),
+           field<&LayeredComposite::speed>("speed", "", {0, 10}, "Multiplies the rain's velocity; 1 is true."),
+           field<&LayeredComposite::strength>("strength", "", {0, 10}, "Multiplies the drops' opacity; 1 is true."),
+           field<&LayeredComposite::milk>("milk", "", {0, 1}, "Bias of the drops towards white; 0 is true.")}),
+      schema<StreakSprites>(
+          "streak_sprites", "Settings of the technique rainfall=sprites (Tariq 2007); every emitter has them.",
+          {field<&StreakSprites::published>("published", "", any, "As printed, with what is known to break."),
+           field<&StreakSprites::freeze>("freeze", "", any, "The drops stand still."),
+           field<&StreakSprites::hide_rain>("hide_rain", "", any, "The drops are not drawn."),
+           field<&StreakSprites::hide_background>("hide_background", "", any, "Only the drops are drawn."),
+           field<&StreakSprites::simple_shader>("simple_shader", "", any, "Even streaks, without the table."),
+           field<&StreakSprites::fraction>("fraction", "", {0, 1}, "Share of the drops that is drawn."),
+           field<&StreakSprites::wind>("wind", "", {0, 10}, "Multiplies the wind; 1 is true."),
+           field<&StreakSprites::directional_response>("directional_response", "", {0, 100},
+                                                       "Multiplies the light of directional lights; 1 is true."),
+           field<&StreakSprites::lamp_response>("lamp_response", "", {0, 100},
+                                                "Multiplies the light of point and spot lights; 1 is true.")}),
+      schema<Snowfall>(
+          "snowfall", "Falling snow.",
+          {field<&Snowfall::snow_mm_per_hour>("snow_mm_per_hour", "mm/h", {0, 30}, "Water reaching the ground as snow."),
+           field<&Snowfall::drawn_distance_m>("drawn_distance_m", "m", {0, 200}, "Farther flakes become haze."),
+           field<&Snowfall::maximum_flakes>("maximum_flakes", "", {0, 400000000},
+                                            "Budget of flakes; 0: what the device affords."),
+           field<&Snowfall::sway>("sway", "", {0, 10}, "Multiplies the flakes' sway; 1 is natural."),
+           field<&Snowfall::seed>("seed", "", {0, 4294967295.0}, "Which snow of all possible snows.")}),
       schema<Wind>("wind", "Mean wind and gusts.",
                    {field<&Wind::velocity_mps>("velocity_mps", "m/s", {-80, 80}, "Mean wind."),
                     field<&Wind::gust_mps>("gust_mps", "m/s", {0, 40}, "Gust amplitude along the wind."),

@@ -2,6 +2,7 @@
 #include <span>
 
 #include "components/light.hpp"
+#include "components/techniques.hpp"
 #include "components/transform.hpp"
 #include "components/view.hpp"
 #include "components/water.hpp"

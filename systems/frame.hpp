@@ -10,6 +10,8 @@
 
 #include "systems/frame_shared.h"
 #include "systems/rain_frame.hpp"
+#include "systems/snow_frame.hpp"
+#include "systems/techniques.hpp"
 
 namespace petrichor {
 
@@ -61,6 +63,8 @@ struct FrameSky {
 struct Frame {
   std::uint64_t number = 0;
   double time_s = 0.0;
+  float step_s = 1.0f / 60.0f;  // since the frame before; only published settings may depend on it
+  Techniques techniques;        // before the systems extract: by what each effect is drawn
   int width = 0, height = 0;  // pixels of the output image
   FrameCamera camera;
   FrameSky sky;
@@ -71,6 +75,7 @@ struct Frame {
   std::uint64_t geometry_version = 0;
   std::uint64_t lights_version = 0;
   std::optional<FrameRain> rain;            // absent, or its rate 0: no rain pass runs
+  std::optional<FrameSnow> snow;            // absent, or its rate 0: no snow pass runs
   std::int32_t affordable_drops = 4000000;  // for an emitter that names no budget of its own
   GpuScene* scene = nullptr;
   FrameUniforms uniforms{};  // filled last, by finish_frame (systems/frame_gpu.hpp)

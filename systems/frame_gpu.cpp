@@ -75,8 +75,15 @@ void finish_frame(Frame& frame) {
   u.sky_horizon = {frame.sky.horizon_cd_m2, frame.sky.glow_height};
   u.mist = {frame.mist.extinction_per_m, frame.mist.albedo};
   u.rain = glm::vec4(0.0f);
+  for (glm::vec4& onsets : u.rain_onsets) onsets = glm::vec4(0.0f);
   if (frame.rain && frame.rain->rain_mm_per_hour > 0.0f) {
+    update_onsets(*frame.rain);
     u.rain = rain_uniform(*frame.rain);
+    for (int i = 0; i < rain_onsets; ++i) {
+      const RainOnset& o = frame.rain->onsets[i];
+      u.rain_onsets[i / 2][2 * (i % 2)] = o.extinction_per_m;
+      u.rain_onsets[i / 2][2 * (i % 2) + 1] = o.onset_m;
+    }
   }
   u.counts = {0, static_cast<std::uint32_t>(frame.instances.size()), 0, 0};
   u.counts.x = static_cast<std::uint32_t>(visible_lights(frame).size());

@@ -41,9 +41,11 @@ struct FrameUniforms {
   vec4 sky_zenith;               // cd/m2, w: ambient multiplier
   vec4 sky_horizon;              // cd/m2, w: glow height
   vec4 mist;                     // extinction 1/m, rgb albedo in yzw
-  vec4 rain;                     // extinction 1/m of the drops that are not drawn singly beyond .y m; .y distance
-                                 // where they begin; .z extinction 1/m of drops too small to be drawn at any distance;
-                                 // .w rain rate mm/h
+  vec4 rain;                     // extinction 1/m of the drops that are not drawn singly beyond .y m, .y the mean of
+                                 // the distances where they begin; .z extinction 1/m of what is drawn at no distance:
+                                 // drops too small, and the share of fog alone; .w rain rate mm/h
+  vec4 rain_onsets[4];           // two techniques or groups of classes each: extinction 1/m of the drops that are drawn
+                                 // singly out to a distance, that distance m; and again. undrawn_rain_depth() reads it
   uvec4 counts;                  // lights, instances, 0, 0
 };
 
@@ -63,7 +65,7 @@ struct OcclusionUniforms {
 };
 
 #ifdef __cplusplus
-static_assert(sizeof(FrameUniforms) == 4 * 64 + 10 * 16);
+static_assert(sizeof(FrameUniforms) == 4 * 64 + 14 * 16);
 static_assert(sizeof(LightGpu) == 64);
 static_assert(sizeof(OcclusionUniforms) == 96);
 }  // namespace petrichor

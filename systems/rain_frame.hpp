@@ -1,9 +1,13 @@
 #pragma once
 // The falling rain of one frame, as the passes need it. Filled by systems/rainfall.
 
+#include <algorithm>
+#include <array>
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <vector>
+
+#include "systems/techniques.hpp"
 
 namespace petrichor {
 
@@ -17,6 +21,46 @@ struct RainClass {
   bool drawn;               // false: too small to be drawn singly, but it falls and is measured
   glm::dvec3 origin_m;      // the class's frame, in the world, at the frame's time (when the shutter closes)
   glm::vec3 velocity_mps;   // wind of this class minus fall
+};
+
+// What one technique draws of the rain, for the fog to stand in for the rest: extinction per metre that it draws from
+// the camera out to onset_m, beyond which fog takes over.
+struct RainOnset {
+  float extinction_per_m = 0.0f;
+  float onset_m = 0.0f;
+};
+constexpr int rain_onsets = 8;
+
+// The double cone (Wang and Wade 2004), as the frame sees it. Filled by systems/rainfall/cone.
+constexpr int cone_layers = 4;
+struct FrameCone {
+  bool published = false;  // as printed: lengths and scroll by frame time, no hand-over near the apex
+  glm::vec3 axis{0.0f, -1.0f, 0.0f};  // unit, world: the way the precipitation moves past the camera
+  float speed_mps = 0.0f;             // along the axis
+  float apex_fade = 0.0f;             // 1: nothing moves past the camera, so no cone is drawn
+  std::array<float, cone_layers> phase{};       // of each layer's texture along the axis, wrapped to [0, 1)
+  std::array<float, cone_layers> elongation{};  // streak length over that of the texture
+  std::array<float, cone_layers> distance_m{};  // of each layer
+  float far_m = 20.0f;                          // the outermost layer stands for rain out to here
+};
+
+// The layered composite (Tatarchuk and Isidoro 2006, 3.1). Filled by systems/rainfall/layered.
+struct FrameLayered {
+  bool published = false;
+  glm::vec3 velocity_mps{0.0f};  // of the rain past the camera
+  glm::dvec3 travelled_m{0.0};   // the rain's way past the camera, kept small by wrapping where the textures repeat
+  float strength = 1.0f, milk = 0.0f, lightning = 0.0f;
+  float far_m = 20.0f;
+};
+
+// Streak sprites (Tariq 2007). Filled by systems/rainfall/sprites.
+struct FrameSprites {
+  bool published = false;
+  bool hidden = false, hide_background = false, simple_shader = false;
+  float fraction = 1.0f, directional_response = 1.0f, lamp_response = 1.0f;
+  float box_m = 20.0f;  // edge of the box about the camera that holds the drops
+  std::int32_t count = 0;
+  double time_s = 0.0;  // stands still while frozen
 };
 
 struct FrameRain {
@@ -33,13 +77,60 @@ struct FrameRain {
   float drawn_extinction_per_m = 0.0f;  // of the classes that are drawn
   glm::vec3 mean_velocity_mps{0.0f};    // mass-weighted: the direction of the occlusion map
   std::vector<RainClass> classes;
+  Techniques techniques;  // of the frame; see share()
+  FrameCone cone;
+  FrameLayered layered;
+  FrameSprites sprites;
+  // Share of all drops that each technique draws; every technique thins its drops to it, so that while two give way to
+  // one another the mean stays. The rungs of the field share one field.
+  float share(RainRung rung) const { return techniques.share(Effect::rainfall, rung); }
+  float field_share() const {
+    return share(RainRung::drop_field) + share(RainRung::full_field) + share(RainRung::near_drops);
+  }
+  // Out to where each technique draws; update_onsets fills them. With the fog's own they sum to
+  // drawn_extinction_per_m.
+  float fog_extinction_per_m = 0.0f;
+  std::array<RainOnset, rain_onsets> onsets{};
 };
 
-// FrameUniforms::rain of this rain: what fog has to stand in for. The fade is linear, so extinction that
-// starts in its middle has the same mean transmittance beyond it; likewise for classes of different reach.
+// FrameUniforms::rain of this rain: means, for airlight. Transmittance is exact by FrameUniforms::rain_onsets.
 inline glm::vec4 rain_uniform(const FrameRain& r) {
-  return {r.drawn_extinction_per_m, 0.5f * (r.fade_start_m + r.drawn_distance_m) * r.mean_reach,
-          r.extinction_per_m - r.drawn_extinction_per_m, r.rain_mm_per_hour};
+  float sum = 0.0f, reach = 0.0f;
+  for (const RainOnset& o : r.onsets) sum += o.extinction_per_m, reach += o.extinction_per_m * o.onset_m;
+  return {sum, sum > 0.0f ? reach / sum : 0.0f, r.extinction_per_m - r.drawn_extinction_per_m + r.fog_extinction_per_m,
+          r.rain_mm_per_hour};
+}
+
+// Fills onsets from the classes, the distances and the shares; after whoever changes one of them. The field's fade is
+// linear, so extinction that starts in its middle has the same mean transmittance beyond it.
+inline void update_onsets(FrameRain& r) {
+  r.onsets = {};
+  constexpr int field_onsets = rain_onsets - 3;
+  const float middle = 0.5f * (r.fade_start_m + r.drawn_distance_m), field = r.field_share();
+  float drawn = 0.0f;
+  for (const RainClass& c : r.classes)
+    if (c.drawn) drawn += c.drops_per_m3 * c.diameter_mm * c.diameter_mm;
+  // Classes of different reach, a few at a time, by equal shares of the extinction.
+  float before = 0.0f;
+  for (const RainClass& c : r.classes) {
+    if (!c.drawn || !(drawn > 0.0f)) continue;
+    const float share = c.drops_per_m3 * c.diameter_mm * c.diameter_mm / drawn;
+    RainOnset& o = r.onsets[std::min(int((before + 0.5f * share) * field_onsets), field_onsets - 1)];
+    const float extinction = share * field * r.drawn_extinction_per_m;
+    const float sum = o.extinction_per_m + extinction;
+    if (sum > 0.0f) o.onset_m = (o.onset_m * o.extinction_per_m + middle * c.reach * extinction) / sum;
+    o.extinction_per_m = sum;
+    before += share;
+  }
+  // Without classes (tests that say only the sums): all at one distance.
+  if (!(drawn > 0.0f)) r.onsets[0] = {field * r.drawn_extinction_per_m, middle * r.mean_reach};
+  r.onsets[field_onsets] = {r.share(RainRung::double_cone) * r.drawn_extinction_per_m, r.cone.far_m};
+  r.onsets[field_onsets + 1] = {r.share(RainRung::composite) * r.drawn_extinction_per_m, r.layered.far_m};
+  r.onsets[field_onsets + 2] = {r.share(RainRung::sprites) * r.drawn_extinction_per_m, 0.5f * r.sprites.box_m};
+  // Fog alone: from the camera on. It shares an onset of 0 with nothing else, so it is what is missing in the sum.
+  float sum = 0.0f;
+  for (const RainOnset& o : r.onsets) sum += o.extinction_per_m;
+  r.fog_extinction_per_m = std::max(r.drawn_extinction_per_m - sum, 0.0f);
 }
 
 }  // namespace petrichor

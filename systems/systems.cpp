@@ -9,7 +9,9 @@
 #include "systems/image/passes.hpp"
 #include "systems/lighting/passes.hpp"
 #include "systems/occlusion/occlusion.hpp"
+#include "systems/rainfall/chart.hpp"
 #include "systems/rainfall/extract.hpp"
+#include "systems/rainfall/ladders.hpp"
 #include "systems/rainfall/passes.hpp"
 #include "systems/scene/propagate.hpp"
 #include "systems/walker/walk.hpp"
@@ -98,10 +100,21 @@ std::vector<PassOffer> all_passes() {
   return all;
 }
 
-std::vector<Technique> all_techniques() {
+std::vector<Ladder> all_ladders() {
+  std::vector<Ladder> all;
+  all.push_back(rainfall_ladder());
+  all.push_back(snow_ladder());
+  all.push_back(streaks_ladder());
+  all.push_back(near_drops_ladder());
+  all.push_back(occlusion_ladder());
+  all.push_back(antialias_ladder());
+  all.push_back(resolution_ladder());
+  return all;
+}
+
+std::vector<ChartOffer> all_charts() {
   return {
-      {"rainfall", "drop_field", "every drop, drawn singly out to emitter.drawn_distance_m (the default)"},
-      {"rainfall", "fog", "no single drops: their extinction and airlight alone"},
+      {"rainfall", "all ways to draw falling rain, in three scenes", chart_rainfall},
   };
 }
 

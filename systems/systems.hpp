@@ -6,6 +6,8 @@
 
 #include "engine/ecs/schedule.hpp"
 #include "engine/graph/graph.hpp"
+#include "systems/chart.hpp"
+#include "systems/ladder.hpp"
 #include "systems/system_context.hpp"
 
 namespace petrichor {
@@ -16,12 +18,6 @@ std::vector<std::string_view> outside_resources();
 
 std::vector<PassOffer> all_passes();
 
-// The techniques an effect can be drawn by, for --technique and `info`.
-struct Technique {
-  std::string_view effect;
-  std::string_view rung;
-  std::string_view meaning;
-};
-std::vector<Technique> all_techniques();
+// Here too: all_ladders() of systems/ladder.hpp, and all_charts() of systems/chart.hpp.
 
 }  // namespace petrichor

@@ -133,8 +133,10 @@ Result<void> render(const RenderOptions& options) {
   if (want_stats) {
     auto json = to_json(stats, renderer.device, job->width, job->height, job->frames.end - job->frames.begin,
                         drops_drawn, renderer.timer->gpu_times_are_real());
-    // What the last frame was drawn by; nothing where it did not rain.
-    if (frame.rain) json["techniques"]["rainfall"] = frame.rain->drawn_distance_m > 0.0f ? "drop_field" : "fog";
+    // What the last frame was drawn by; nothing for what was not there.
+    for (const Ladder& ladder : all_ladders())
+      if (ladder.coverage(frame) > 0.0)
+        json["techniques"][ladder.name] = ladder.rungs[frame.techniques[ladder.effect].rung].name;
     if (auto written = write_whole_file(options.stats, json.dump(2) + "\n"); !written) return written;
   }
   log_info("{} ({}x{}, {} frames)", job->target.file.string(), job->width, job->height,

@@ -19,7 +19,6 @@
 #include "engine/main/world.hpp"
 #include "engine/script/reference.hpp"
 #include "systems/rainfall/bench.hpp"
-#include "systems/rainfall/chart.hpp"
 #include "systems/rainfall/measure.hpp"
 
 namespace petrichor {
@@ -88,15 +87,20 @@ Result<void> bench(const BenchOptions& options) {
 }
 
 Result<void> chart(const ChartOptions& options) {
-  const auto effects = pick(options.effects, {"rainfall"}, "chart");
-  if (!effects) return tl::unexpected(effects.error());
+  std::vector<std::string> known;
+  for (const ChartOffer& offer : all_charts()) known.emplace_back(offer.name);
+  const auto names = pick(options.effects, known, "chart");
+  if (!names) return tl::unexpected(names.error());
   auto renderer = open_renderer(false, {});
   if (!renderer) return tl::unexpected(renderer.error());
-  for (const std::string& effect : *effects) {
-    Progress progress("charting " + effect, 1000);
-    const auto advance = [&](double share) { progress.advance_to(static_cast<std::int64_t>(share * 1000.0)); };
-    if (auto charted = chart_rainfall(options.out, (*renderer)->device.renderer, advance); !charted) return charted;
-  }
+  const DeviceInfo& device = (*renderer)->device;
+  for (const std::string& name : *names)
+    for (const ChartOffer& offer : all_charts()) {
+      if (offer.name != name) continue;
+      Progress progress("charting " + name, 1000);
+      const auto advance = [&](double share) { progress.advance_to(static_cast<std::int64_t>(share * 1000.0)); };
+      if (auto charted = offer.run({options.out, device.renderer, device.software, advance}); !charted) return charted;
+    }
   log_info("charts are in {}", options.out.string());
   return {};
 }
@@ -157,8 +161,17 @@ nlohmann::ordered_json describe() {
           {{"name", slot.name}, {"access", access[static_cast<int>(slot.access)]}, {"optional", slot.optional}});
     all["passes"].push_back({{"name", pass.name}, {"meaning", pass.meaning}, {"slots", slots}});
   }
-  for (const Technique& technique : all_techniques())
-    all["ladders"].push_back({{"effect", technique.effect}, {"rung", technique.rung}, {"meaning", technique.meaning}});
+  for (const Ladder& ladder : all_ladders()) {
+    nlohmann::ordered_json rungs = nlohmann::ordered_json::array();
+    for (const Rung& rung : ladder.rungs)
+      rungs.push_back({{"name", rung.name}, {"meaning", rung.meaning}, {"stable", rung.stable}});
+    all["ladders"].push_back({{"effect", ladder.name},
+                              {"meaning", ladder.meaning},
+                              {"truth", ladder.truth},
+                              {"error", ladder.error_measure},
+                              {"default", ladder.rungs[Techniques()[ladder.effect].rung].name},
+                              {"rungs", rungs}});
+  }
   return all;
 }
 
@@ -173,9 +186,13 @@ void print_for_people(const nlohmann::ordered_json& all) {
   for (const auto& s : all["systems"]) fmt::print("  {:<20} {}\n", text(s["name"]), text(s["phase"]));
   fmt::print("\nPasses on offer\n");
   for (const auto& p : all["passes"]) fmt::print("  {:<20} {}\n", text(p["name"]), text(p["meaning"]));
-  fmt::print("\nTechniques\n");
-  for (const auto& l : all["ladders"])
-    fmt::print("  {:<20} {}\n", text(l["effect"]) + "=" + text(l["rung"]), text(l["meaning"]));
+  fmt::print("\nLadders: --technique EFFECT=RUNG, cheapest first\n");
+  for (const auto& l : all["ladders"]) {
+    fmt::print("  {}: {}\n", text(l["effect"]), text(l["meaning"]));
+    for (const auto& r : l["rungs"])
+      fmt::print("    {:<24} {}{}\n", text(l["effect"]) + "=" + text(r["name"]), text(r["meaning"]),
+                 r["name"] == l["default"] ? " (default)" : "");
+  }
 }
 
 Result<void> write_graph(const InfoOptions& options) {

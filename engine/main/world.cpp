@@ -74,6 +74,18 @@ Result<std::pair<glm::vec3, glm::vec3>> bounds_of(Registry& registry,
   return std::pair{low, high};
 }
 
+// Every emitter has the settings of all techniques, so that --set, scripts and the inspector find them.
+void give_techniques(Registry& registry) {
+  std::vector<Entity> emitters;
+  registry.view<const Emitter>().each([&](Entity entity, const Emitter&) { emitters.push_back(entity); });
+  for (const Entity entity : emitters) {
+    if (!registry.find<DoubleCone>(entity)) registry.emplace<DoubleCone>(entity);
+    if (!registry.find<LayeredComposite>(entity)) registry.emplace<LayeredComposite>(entity);
+    if (!registry.find<StreakSprites>(entity)) registry.emplace<StreakSprites>(entity);
+    if (!registry.find<Snowfall>(entity)) registry.emplace<Snowfall>(entity);
+  }
+}
+
 }  // namespace
 
 World::World(GpuScene* scene, std::uint32_t seed)
@@ -121,6 +133,7 @@ Result<std::unique_ptr<World>> World::open(const SubjectOptions& options, GpuSce
   }
   world->script_ = std::make_unique<ScriptHost>(world->registry_, component_schemas(), std::move(script));
   if (auto ran = world->script_->run_file(*file); !ran) return tl::unexpected(ran.error());
+  give_techniques(world->registry_);
   if (auto applied = world->apply_options(options); !applied) return tl::unexpected(applied.error());
   if (auto first = world->advance_to(0.0); !first) return tl::unexpected(first.error());
   return world;
@@ -142,14 +155,15 @@ Result<void> World::apply_options(const SubjectOptions& options) {
     const std::string effect = text.substr(0, equals), rung = text.substr(equals + 1);
     std::string known;
     bool found = false;
-    for (const Technique& technique : all_techniques()) {
-      found |= technique.effect == effect && technique.rung == rung;
-      known += fmt::format("\n  {}={}  {}", technique.effect, technique.rung, technique.meaning);
-    }
+    for (const Ladder& ladder : all_ladders())
+      for (std::size_t i = 0; i < ladder.rungs.size(); ++i) {
+        known += fmt::format("\n  {}={}  {}", ladder.name, ladder.rungs[i].name, ladder.rungs[i].meaning);
+        if (ladder.name != effect || ladder.rungs[i].name != rung) continue;
+        found = true;
+        techniques_.set(ladder.effect, static_cast<std::uint8_t>(i));
+        chosen_by_user_[static_cast<std::size_t>(ladder.effect)] = true;
+      }
     if (!found) return wrong_call(fmt::format("--technique {}: no such technique. There are:{}", text, known));
-    // Fog alone is the drop field whose every drop is farther than it draws.
-    if (effect == "rainfall" && rung == "fog")
-      if (auto pinned = script_->pin("emitter", "drawn_distance_m", 0.0); !pinned) return pinned;
   }
   return {};
 }
@@ -206,6 +220,9 @@ void World::extract(Frame& frame, std::uint64_t number, double time_s, int width
   frame.height = height;
   frame.scene = scene_;
   frame.affordable_drops = affordable_drops_;
+  frame.techniques = techniques_;
+  if (extracted_s_ >= 0.0 && time_s > extracted_s_) frame.step_s = static_cast<float>(time_s - extracted_s_);
+  extracted_s_ = time_s;
   if (!has_camera()) {
     frame.camera.position_m = {0.0, 1.7, 0.0};
     if (!std::exchange(told_of_no_camera_, true))

@@ -2,6 +2,7 @@
 // A running scene: the registry, the script that directs it and the fixed-step simulation. Knows nothing of
 // windows or images; fills a Frame when asked.
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
@@ -32,6 +33,10 @@ class World {
   // The budget of drops for emitters that name none. Part of the picture: the same on every run on a device.
   void set_affordable_drops(std::int32_t drops) { affordable_drops_ = drops; }
 
+  // By what each effect is drawn; --technique has set some of them for good.
+  Techniques& techniques() { return techniques_; }
+  bool chosen_by_user(Effect effect) const { return chosen_by_user_[static_cast<std::size_t>(effect)]; }
+
   Registry& registry() { return registry_; }
   ScriptHost& script() { return *script_; }
   const Cinematic& cinematic() const { return script_->cinematic(); }
@@ -58,6 +63,9 @@ class World {
   GpuScene* scene_;
   std::uint32_t seed_;
   std::int32_t affordable_drops_ = 4000000;
+  Techniques techniques_;
+  std::array<bool, effect_count> chosen_by_user_{};
+  double extracted_s_ = -1.0;  // time of the frame before
   bool told_of_no_camera_ = false;
   std::int64_t tick_ = -1;  // the newest simulated tick
 };

@@ -3,9 +3,11 @@ return {
   resources = {
     colour  = { format = "rgba16f" },
     picture = { format = "rgba8" },
+    rain_light = { format = "rgba16f", scale = 1 / 16, layers = 12 },
   },
   passes = {
     { pass = "sky", colour = "colour" },
+    { pass = "rain_light", rain_light = "rain_light" },
     { pass = "rain_cells" },
     { pass = "rain_splat" },
     { pass = "rain_composite", colour = "colour" },

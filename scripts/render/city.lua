@@ -21,6 +21,7 @@ local resources = {
   light_lists = { format = "rgba32ui", scale = 1 / 8 },            -- a bit a lamp, for every 8x8 pixels
   colour      = { format = "rgba16f" },                            -- the picture as light
   airlight    = { format = "rgba16f", scale = 1 / 4 },             -- lamps glowing in the mist
+  rain_light  = { format = "rgba16f", scale = 1 / 16, layers = 12 },  -- lamps on drops that are not known one by one
   bloom       = { format = "rgba16f", scale = 1 / 2, mips = 6 },   -- what the lens scatters
   display     = { format = "rgba16f" },                            -- the picture as seen, before antialiasing
   picture     = { format = "rgba8" },
@@ -45,7 +46,10 @@ local passes = {
     parameters = { forward = 0.8 } },
   { pass = "atmosphere", colour = "colour", depth = "depth", airlight = "airlight", environment = "environment" },
 
-  -- Rain: the cells of the drop field in view, their drops as streaks, and those laid over the picture.
+  -- Rain, by whichever technique is chosen (`petrichor info` lists them); the passes of the others do not run.
+  { pass = "rain_light", rain_light = "rain_light" },
+
+  -- The drop field: its cells in view, their drops as streaks, and those laid over the picture.
   { pass = "rain_cells" },
   { pass = "rain_splat", depth = "depth", occlusion_map = "occlusion_map" },
   { pass = "rain_composite", colour = "colour", environment = "environment" },

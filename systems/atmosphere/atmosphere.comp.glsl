@@ -41,8 +41,7 @@ void main() {
   vec3 ray = place * inversesqrt(squared);
   // Without a surface: through the layer of mist, at most reach_m.
   float distance_m = depth > 0.0 ? sqrt(squared) : min(mist_height_m / max(ray.y, 1e-3), reach_m);
-  float thickness = (frame.mist.x + frame.rain.z) * distance_m +
-                    frame.rain.x * max(distance_m - frame.rain.y, 0.0);
+  float thickness = frame.mist.x * distance_m + undrawn_rain_depth(distance_m);
   float passes = exp(-thickness);
 
   vec3 result = imageLoad(colour, texel).rgb * passes;

@@ -90,6 +90,9 @@ void antialias(Buffer& edges, PassContext& context) {
     program.use();
     for (const char* parameter : {"least_contrast", "relative_contrast", "softening"})
       program.set(parameter, context.parameter(parameter));
+    // Where it is off no contrast is an edge.
+    if (context.frame.techniques.share(Effect::antialias, AntialiasRung::edges) < 0.5f)
+      program.set("least_contrast", 1e9f);
     return program;
   };
   use("find").dispatch(context.width, context.height);
@@ -101,6 +104,33 @@ void antialias(Buffer& edges, PassContext& context) {
 }
 
 }  // namespace
+
+Ladder antialias_ladder() {
+  Ladder l;
+  l.effect = Effect::antialias;
+  l.name = "antialias";
+  l.meaning = "smooth edges";
+  l.truth = "the picture drawn at four times the width and height";
+  l.error_measure = "root mean square, without antialiasing: 1";
+  l.rungs = {{"off", "edges as they fall on pixels", {"antialias"}, 0.0, 1.0},
+             {"edges", "edges found in the finished picture are smoothed", {"antialias"}, 2.0, 0.5}};
+  l.coverage = [](const Frame&) { return 0.02; };
+  return l;
+}
+
+Ladder resolution_ladder() {
+  Ladder l;
+  l.effect = Effect::resolution;
+  l.name = "resolution";
+  l.meaning = "pixels drawn, of those shown";
+  l.truth = "the picture at its full size";
+  l.error_measure = "root mean square; an even picture: 1";
+  l.rungs = {{"half", "half the width and height", {}, 0.0, 0.5},
+             {"two_thirds", "two thirds of the width and height", {}, 0.0, 0.3},
+             {"full", "every pixel", {}, 0.0, 0.0}};
+  l.coverage = [](const Frame&) { return 1.0; };
+  return l;
+}
 
 std::vector<PassOffer> image_passes() {
   std::vector<PassOffer> offers;

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "engine/graph/graph.hpp"
+#include "systems/ladder.hpp"
 
 namespace petrichor {
 
@@ -12,5 +13,9 @@ namespace petrichor {
 // tonemap8:  the same, dithered to the 8-bit picture: the end of a frame without antialiasing.
 // antialias: the 8-bit picture from display: edges smoothed, dithered.
 std::vector<PassOffer> image_passes();
+
+Ladder antialias_ladder();
+// Pixels that are drawn, of those that are shown: the picture is enlarged by whoever shows it (engine/main).
+Ladder resolution_ladder();
 
 }  // namespace petrichor

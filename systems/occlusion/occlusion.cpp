@@ -144,6 +144,21 @@ glm::mat4 occlusion_clip(const OcclusionPlacement& p, const glm::dvec3& camera_m
   return clip_from_map * occlusion_matrix(p, camera_m);
 }
 
+Ladder occlusion_ladder() {
+  Ladder l;
+  l.effect = Effect::occlusion;
+  l.name = "occlusion";
+  l.meaning = "shelter from what falls";
+  l.truth = "rays (Embree) along the paths of the drops";
+  l.error_measure = "root mean square of the share of rain that arrives, 0 to 1";
+  l.rungs = {{"vertical", "one map, seen from straight above (Chen)", {"occlusion_map"}},
+             {"tilted", "one map, seen along the mean fall", {"occlusion_map"}},
+             {"jittered", "several maps, seen along falls of drops of all sizes", {"occlusion_map"}}};
+  l.coverage = [](const Frame& frame) { return frame.rain && frame.rain->rain_mm_per_hour > 0.0f ? 0.2 : 0.0; };
+  l.directed = false;
+  return l;
+}
+
 std::vector<PassOffer> occlusion_passes() {
   auto state = std::make_shared<MapState>();
   std::vector<PassOffer> offers;

@@ -8,6 +8,7 @@
 
 #include "engine/graph/graph.hpp"
 #include "systems/frame.hpp"
+#include "systems/ladder.hpp"
 
 namespace petrichor {
 
@@ -42,5 +43,7 @@ glm::vec3 lattice_direction(const glm::vec3& fall, float tolerance_rad);
 // occlusion_map: runs where it rains. Slot occlusion_map: depth32f, square, of fixed size, persistent. Parameters:
 // side_m, step_m, tolerance_deg, bias_m.
 std::vector<PassOffer> occlusion_passes();
+
+Ladder occlusion_ladder();
 
 }  // namespace petrichor

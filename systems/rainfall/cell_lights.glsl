@@ -3,9 +3,7 @@
 #define SYSTEMS_RAINFALL_CELL_LIGHTS_GLSL
 #include "systems/frame.glsl"
 #include "systems/rainfall/rain_shared.h"
-#ifndef LAMPS  // else streak.glsl has it
-layout(std430, binding = RAIN_OPTICS_BINDING) readonly buffer RainOptics { float phase[RAIN_PHASE_BINS]; };
-#endif
+#include "systems/rainfall/lamp_light.glsl"
 uniform float least_radiance;  // output units: lamps that cannot make a drop of the cell this bright are left out
 
 float phase_at(float sine_of_half_turn) {

@@ -155,73 +155,11 @@ double average(const Image& a) {
   return sum / static_cast<double>(a.size());
 }
 
-// Rows that no other beats in both time and error.
-void mark_hull(std::vector<Row>& rows) {
-  for (Row& row : rows) {
-    row.on_hull = std::none_of(rows.begin(), rows.end(), [&](const Row& other) {
-      return other.ms_median < row.ms_median && other.error < row.error;
-    });
-  }
-}
-
-std::string table(const std::vector<Row>& rows, double floor, const std::string& device, int width, int height) {
-  std::string text =
-      fmt::format("# {}x{}, {}; error of two truths of other seeds: {:.5f}\n", width, height, device, floor);
-  text +=
-      "technique,distance_m,maximum_drops,drops_drawn,ms_min,ms_median,mean_error,deviation_error,error,mean_shift,"
-      "sound,on_hull\n";
-  for (const Row& r : rows) {
-    text += fmt::format("{},{},{},{:.0f},{:.4f},{:.4f},{:.6f},{:.6f},{:.6f},{:.6f},{},{}\n", r.setting.name,
-                        r.setting.distance_m, r.setting.most_drops, r.drops, r.ms_min, r.ms_median, r.mean_error,
-                        r.deviation_error, r.error, r.mean_shift, int(r.sound), int(r.on_hull));
-  }
-  return text;
-}
-
-std::string gnuplot_text(const std::filesystem::path& folder, const std::vector<Row>& rows, double floor,
-                         const std::string& device) {
-  const auto points = [&](auto&& keep) {
-    std::string text;
-    for (const Row& r : rows)
-      if (keep(r)) text += fmt::format("{} {} \"{}\"\n", r.ms_median, std::max(r.error, 1e-5), r.setting.name);
-    return text.empty() ? std::string("1e-9 1e-9 \"\"\n") : text;
-  };
-  std::vector<Row> hull;
-  for (const Row& r : rows)
-    if (r.on_hull) hull.push_back(r);
-  std::sort(hull.begin(), hull.end(), [](const Row& a, const Row& b) { return a.ms_median < b.ms_median; });
-  std::string line;
-  for (const Row& r : hull) line += fmt::format("{} {}\n", r.ms_median, std::max(r.error, 1e-5));
-  double low = 1e9, high = 0.0;
-  for (const Row& r : rows) low = std::min(low, r.ms_median), high = std::max(high, r.ms_median);
-  std::string text;
-  for (const auto& [terminal, file] : {std::pair{"svg size 900,600 background '#ffffff'", "rainfall.svg"},
-                                       std::pair{"pngcairo size 900,600", "rainfall.png"}}) {
-    text += fmt::format("set terminal {}\nset output '{}'\n", terminal, (folder / file).string());
-    text += fmt::format("set title \"Falling rain, 10 mm/h, {}\"\n", device);
-    text +=
-        "set logscale xy\nset grid\nset key bottom left\nset xlabel 'milliseconds a frame (median)'\n"
-        "set ylabel 'error against the truth (no rain at all: 1)'\n";
-    text += fmt::format("set xrange [{}:{}]\n", low * 0.7, high * 2.0);
-    text += fmt::format("floor = {}\n", floor);
-    text +=
-        "plot '-' using 1:2 with points pt 7 ps 1.2 lc rgb '#1f6fb2' title 'sound', "
-        "'-' using 1:2 with points pt 6 ps 1.2 lc rgb '#1f6fb2' title 'mean is off by more than 0.5%', "
-        "'-' using 1:2:3 with labels offset 0,1 notitle, "
-        "'-' using 1:2 with lines lc rgb '#999999' title 'not dominated', "
-        "floor with lines dt 2 lc rgb '#b23a1f' title 'two truths, other seeds'\n";
-    text += points([](const Row& r) { return r.sound; }) + "e\n" + points([](const Row& r) { return !r.sound; }) +
-            "e\n" + points([](const Row&) { return true; }) + "e\n" + line + "e\n";
-  }
-  return text;
-}
-
 }  // namespace
 
-Result<void> chart_rainfall(const std::filesystem::path& folder, const std::string& device,
-                            const std::function<void(double)>& progress) {
-  const char* renderer = reinterpret_cast<const char*>(glGetString(GL_RENDERER));
-  const bool software = renderer && std::string_view(renderer).find("llvmpipe") != std::string_view::npos;
+Result<void> chart_rainfall(const ChartRun& run) {
+  const bool software = run.software;
+  const auto& progress = run.progress;
   auto studio = Studio::make(software);
   if (!studio) return tl::unexpected(studio.error());
 
@@ -312,22 +250,17 @@ Result<void> chart_rainfall(const std::filesystem::path& folder, const std::stri
     row.sound = std::isfinite(row.error) && std::abs(row.mean_shift) < 0.005;
     rows.push_back(row);
   }
-  mark_hull(rows);
-
-  if (auto written =
-          write_whole_file(folder / "rainfall.csv", table(rows, floor, device, studio->width(), studio->height()));
-      !written)
-    return written;
-  if (std::system("command -v gnuplot >/dev/null 2>&1") != 0) {
-    log_warn("gnuplot is not installed: {} holds the figures, no picture was drawn",
-             (folder / "rainfall.csv").string());
-    return {};
-  }
-  const std::filesystem::path script = folder / "rainfall.gnuplot";
-  if (auto written = write_whole_file(script, gnuplot_text(folder, rows, floor, device)); !written) return written;
-  if (std::system(fmt::format("gnuplot '{}'", script.string()).c_str()) != 0)
-    return failure(fmt::format("gnuplot failed on {}; the figures are in rainfall.csv beside it", script.string()));
-  return {};
+  Chart chart;
+  chart.name = chart.effect = "rainfall";
+  chart.title = "Falling rain, 10 mm/h";
+  chart.device = run.device;
+  chart.width = studio->width();
+  chart.height = studio->height();
+  chart.floor = floor;
+  for (const Row& r : rows)
+    chart.points.push_back({r.setting.distance_m > 0.0f ? "drop_field" : "fog", r.setting.name, r.ms_median, r.ms_min,
+                            r.ms_median, r.error, r.mean_shift, r.sound, {{"drops", r.drops}}});
+  return write_chart(run.folder, chart);
 }
 
 }  // namespace petrichor

@@ -1,11 +1,7 @@
 #pragma once
 // Milliseconds against error of the ways to draw falling rain. Needs a current OpenGL context.
 
-#include <filesystem>
-#include <functional>
-#include <string>
-
-#include "engine/core/result.hpp"
+#include "systems/chart.hpp"
 
 namespace petrichor {
 
@@ -14,7 +10,6 @@ namespace petrichor {
 // exposure. Rain is random, so pictures are compared by their mean and their standard deviation over time, with the
 // same drops where a technique draws drops; the floor is what two truths of other seeds differ by. Writes
 // rainfall.csv, and with gnuplot rainfall.svg and rainfall.png. `device` is for the title. progress gets 0 to 1.
-Result<void> chart_rainfall(const std::filesystem::path& folder, const std::string& device,
-                            const std::function<void(double)>& progress);
+Result<void> chart_rainfall(const ChartRun&);
 
 }  // namespace petrichor

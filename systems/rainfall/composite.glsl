@@ -3,13 +3,10 @@
 #define SYSTEMS_RAINFALL_COMPOSITE_GLSL
 #include "systems/frame.glsl"
 #include "systems/rainfall/rain_shared.h"
-#ifdef ENVIRONMENT
-#include "systems/lighting/environment.glsl"
-#endif
+#include "systems/rainfall/ambient.glsl"
 
 layout(std430, binding = RAIN_OPTICAL_DEPTH_BINDING) buffer RainOpticalDepth { uint optical_depth[]; };
 layout(std430, binding = RAIN_RADIANCE_BINDING) buffer RainRadiance { uint radiance[]; };
-uniform vec3 ambient[4];  // a drop's radiance, cd/m2, as a cubic in the sine of the view's elevation
 uniform float near_extinction;  // of drops nearer than the first that is drawn: extinction * axial distance
 uniform bool lamps;
 uniform vec3 ray_corner, ray_x, ray_y;  // ray of a place in the picture, one metre deep: corner + x ray_x + y ray_y
@@ -22,14 +19,7 @@ vec4 rain_over(ivec2 pixel, uint units, uvec3 lamp) {
   float depth = float(units) / RAIN_DEPTH_ONE + near_extinction * slant;
   float transmittance = exp(-depth);
   float opacity = 1.0 - transmittance;
-#ifdef ENVIRONMENT
-  // A drop shows what lies behind it, inverted and gathered from a lobe about 30 degrees wide (median 25), and a
-  // fifteenth of all round it.
-  vec3 around = 0.93 * environment_radiance(ray / slant, 0.55) + 0.0664 * environment_mean();
-#else
-  float sine = ray.y / slant;
-  vec3 around = max(ambient[0] + sine * (ambient[1] + sine * (ambient[2] + sine * ambient[3])), vec3(0.0));
-#endif
+  vec3 around = drop_ambient(ray / slant);
   // The mean of the drops' lamplight, weighted by their optical depths; (1 - exp(-d)) / d without cancelling.
   float per_depth = depth > 1e-3 ? opacity / depth : 1.0 - 0.5 * depth;
   return vec4(around * opacity + vec3(lamp) * (per_depth / (float(RAIN_RADIANCE_ONE) * frame.lens.w)), transmittance);

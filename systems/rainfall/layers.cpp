@@ -71,7 +71,9 @@ RainBox view_box(const FrameCamera& camera, int width, int height, float distanc
 
 RainLayers view_layers(const FrameRain& rain, const FrameCamera& camera, int width, int height) {
   if (!(rain.drawn_distance_m > 0.0f)) return {};
-  return layers_in(rain, camera.position_m, [&](const RainClass& c, RainBox& box) {
+  FrameRain thinned = rain;
+  for (RainClass& c : thinned.classes) c.drops_per_m3 *= rain.field_share();
+  return layers_in(thinned, camera.position_m, [&](const RainClass& c, RainBox& box) {
     if (!c.drawn) return false;
     const RainBox view = view_box(camera, width, height, rain.drawn_distance_m * c.reach);
     // A drop that is seen while the shutter is open may have left the view when it closes.

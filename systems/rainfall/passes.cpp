@@ -9,8 +9,9 @@
 #include <string>
 #include <string_view>
 
-#include "systems/rainfall/drop_optics.hpp"
 #include "systems/rainfall/layers.hpp"
+#include "systems/rainfall/light_volume.hpp"
+#include "systems/rainfall/optics.hpp"
 
 namespace petrichor {
 namespace {
@@ -24,7 +25,7 @@ struct Command {
 
 // What the three passes share between them and from frame to frame.
 struct RainGpu {
-  Buffer layers, cells, command, optical_depth, radiance, optics, streaks, read_back;
+  Buffer layers, cells, command, optical_depth, radiance, streaks, read_back;
   VertexArray no_vertices;
   bool software = false;  // draw sorted by length
   bool software_device = false, device_known = false;
@@ -32,15 +33,14 @@ struct RainGpu {
   std::uint32_t layer_count = 0, capacity = 0;
   float least_radiance = 0.0f;
   std::uint64_t frame_number = std::numeric_limits<std::uint64_t>::max();
-  FrameSky ambient_sky;
-  bool ambient_known = false;
-  std::array<glm::vec3, 4> ambient{};
+  std::shared_ptr<RainOptics> optics;
 };
 
 std::weak_ptr<RainGpu> newest;
 
 bool rains(const Frame& frame) {
-  return frame.rain && frame.rain->rain_mm_per_hour > 0.0f && frame.rain->drawn_distance_m > 0.0f;
+  return frame.rain && frame.rain->rain_mm_per_hour > 0.0f && frame.rain->drawn_distance_m > 0.0f &&
+         frame.rain->field_share() > 0.0f;
 }
 
 bool lamps_on_rain(const Frame& frame) {
@@ -52,23 +52,6 @@ glm::vec3 distances(const Frame& frame) {
   // thousands of far ones.
   const float nearest = std::max(frame.camera.near_m, 0.3f);
   return {nearest, frame.rain->fade_start_m, frame.rain->drawn_distance_m};
-}
-
-glm::dvec3 sky_radiance(const FrameSky& sky, const glm::dvec3& direction) {  // as systems/sky.glsl
-  const double glow = std::exp(-std::max(direction.y, 0.0) / std::max(double(sky.glow_height), 1e-3));
-  return glm::mix(glm::dvec3(sky.zenith_cd_m2), glm::dvec3(sky.horizon_cd_m2), glow);
-}
-
-void update_optics(RainGpu& gpu, const FrameSky& sky) {
-  static_assert(drop_phase_bins == RAIN_PHASE_BINS);
-  if (gpu.optics.bytes == 0) upload(gpu.optics, std::span<const float>(make_drop_phase()));
-  const bool same = gpu.ambient_known && sky.zenith_cd_m2 == gpu.ambient_sky.zenith_cd_m2 &&
-                    sky.horizon_cd_m2 == gpu.ambient_sky.horizon_cd_m2 &&
-                    sky.glow_height == gpu.ambient_sky.glow_height;
-  if (same) return;
-  gpu.ambient = fit_drop_radiance([&](const glm::dvec3& d) { return sky_radiance(sky, d); });
-  gpu.ambient_sky = sky;
-  gpu.ambient_known = true;
 }
 
 void bind(GLuint binding, const Buffer& buffer) {
@@ -92,7 +75,7 @@ void list_cells(RainGpu& gpu, PassContext& context) {
   const RainLayers view = view_layers(*frame.rain, frame.camera, context.width, context.height);
   gpu.layer_count = static_cast<std::uint32_t>(view.layers.size());
   gpu.frame_number = frame.number;
-  update_optics(gpu, frame.sky);
+  bind_rain_optics(*gpu.optics, frame);
   const Command start;
   upload(gpu.command, &start, sizeof start);
   if (view.layers.empty()) return;
@@ -106,7 +89,6 @@ void list_cells(RainGpu& gpu, PassContext& context) {
   bind(RAIN_LAYERS_BINDING, gpu.layers);
   bind(RAIN_CELLS_BINDING, gpu.cells);
   bind(RAIN_COMMAND_BINDING, gpu.command);
-  bind(RAIN_OPTICS_BINDING, gpu.optics);
   const Program& program = context.program(gpu.software ? "cells_software" : "cells");
   program.use();
   program.set("layer_count", unsigned(gpu.layer_count));
@@ -209,7 +191,7 @@ void splat(RainGpu& gpu, PassContext& context) {
   bind(RAIN_COMMAND_BINDING, gpu.command);
   bind(RAIN_OPTICAL_DEPTH_BINDING, gpu.optical_depth);
   bind(RAIN_RADIANCE_BINDING, gpu.radiance);
-  bind(RAIN_OPTICS_BINDING, gpu.optics);
+  bind_rain_optics(*gpu.optics, frame);
   const bool scene = context.has("depth"), lamps = lamps_on_rain(frame);
   if (scene) context.bind_texture(0, "depth");
   if (scene && context.has("occlusion_map")) context.bind_texture(OCCLUSION_UNIT, "occlusion_map");
@@ -232,8 +214,9 @@ void composite(RainGpu& gpu, PassContext& context) {
   const Program& program = context.program(name);
   program.use();
   if (context.has("environment")) context.bind_texture(7, "environment");
-  program.set("near_extinction", frame.rain->drawn_extinction_per_m * distances(frame).x);
-  for (int i = 0; i < 4; ++i) program.set("ambient[" + std::to_string(i) + "]", gpu.ambient[i]);
+  program.set("near_extinction",
+              frame.rain->field_share() * frame.rain->drawn_extinction_per_m * distances(frame).x);
+  set_rain_ambient(*gpu.optics, program);
   program.set("lamps", int(lamps));
   // The ray through a pixel, one metre deep along the axis.
   const float tall = frame.uniforms.lens.x, wide = tall * frame.uniforms.lens.y;
@@ -267,6 +250,7 @@ void composite(RainGpu& gpu, PassContext& context) {
 
 std::vector<PassOffer> rainfall_passes() {
   auto gpu = std::make_shared<RainGpu>();
+  gpu->optics = std::make_shared<RainOptics>();
   newest = gpu;
   const std::vector<std::string> composite_file{"systems/rainfall/rain_composite.comp.glsl"};
   std::vector<PassOffer> offers(3);
@@ -315,6 +299,7 @@ std::vector<PassOffer> rainfall_passes() {
   offers[2].shaders["raster_environment_lamps"] = {raster_files, {"ENVIRONMENT", "LAMPS", "SOFTWARE"}};
   offers[2].wanted = rains;
   offers[2].execute = [gpu](PassContext& context) { composite(*gpu, context); };
+  offers.push_back(rain_light_pass(gpu->optics));
   return offers;
 }
 

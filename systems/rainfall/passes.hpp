@@ -11,7 +11,7 @@
 
 namespace petrichor {
 
-std::vector<PassOffer> rainfall_passes();
+std::vector<PassOffer> rainfall_passes();  // of all techniques
 
 struct RainStats {
   std::uint32_t drops_drawn =

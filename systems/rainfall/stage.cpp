@@ -123,6 +123,8 @@ Result<void> RainStage::load() {
     splat["occlusion_map"] = "map";
   }
   if (set_.draw_rain) {
+    table["resources"]["rain_light"] = {{"format", "rgba16f"}, {"scale", 1.0 / 16.0}, {"layers", 12}};
+    table["passes"].push_back({{"pass", "rain_light"}, {"rain_light", "rain_light"}});
     table["passes"].push_back({{"pass", "rain_cells"}, {"parameters", {{"path", set_.path}}}});
     table["passes"].push_back(splat);
     table["passes"].push_back({{"pass", "rain_composite"}, {"colour", "colour"}});

@@ -3,14 +3,18 @@
 // drops would show, by the same phase function and the same coefficient.
 layout(local_size_x = 8, local_size_y = 8) in;
 #include "systems/geometry/position.glsl"
-#include "systems/rainfall/rain_shared.h"
+#include "systems/rainfall/lamp_light.glsl"
 layout(rgba16f, binding = 0) writeonly uniform image2D colour;
-layout(std430, binding = RAIN_OPTICS_BINDING) readonly buffer RainOptics { float phase[RAIN_PHASE_BINS]; };
 uniform vec3 wall;              // cd/m2
 uniform float wall_distance_m;  // along the axis
 uniform vec3 around;            // what drops show without lamps, cd/m2
 
-float thickness(float x) { return frame.rain.z * x + frame.rain.x * max(x - frame.rain.y, 0.0); }
+// Extinction of undrawn rain at a place.
+float undrawn(float x) {
+  float sum = frame.rain.z;
+  for (int i = 0; i < 4; ++i) sum += dot(step(frame.rain_onsets[i].yw, vec2(x)), frame.rain_onsets[i].xz);
+  return sum;
+}
 
 // Equiangular steps about the lamp (Kulla and Fajardo 2012): x = c + h tan(eta).
 vec3 glow(LightGpu light, vec3 ray, float reach) {
@@ -22,12 +26,11 @@ vec3 glow(LightGpu light, vec3 ray, float reach) {
   for (int i = 0; i < steps; ++i) {
     float eta = mix(first, last, (float(i) + 0.5) / float(steps));
     float x = c + h * tan(eta), d2 = h * h / (cos(eta) * cos(eta));
-    float scattering = frame.rain.z + (x > frame.rain.y ? frame.rain.x : 0.0);
+    float scattering = undrawn(x);
     float cosine = -(x - c) * inversesqrt(d2);
-    int bin = min(int(sqrt(max(0.5 - 0.5 * cosine, 0.0)) * float(RAIN_PHASE_BINS)), RAIN_PHASE_BINS - 1);
     float ratio = d2 / (light.position_range.w * light.position_range.w);
     float window = clamp(1.0 - ratio * ratio, 0.0, 1.0);
-    sum += scattering * window * window * phase[bin] * exp(-thickness(x));
+    sum += scattering * window * window * drop_phase(cosine) * exp(-undrawn_rain_depth(x));
   }
   return light.intensity_radius.rgb * (sum * (last - first) / (float(steps) * h));
 }
@@ -37,7 +40,7 @@ void main() {
   if (any(greaterThanEqual(pixel, ivec2(frame.size.xy)))) return;
   vec3 place = relative_position(vec2(pixel) + 0.5, depth_of_axial_distance(wall_distance_m));
   float reach = length(place);
-  vec3 light = mix(around, wall, exp(-thickness(reach)));
+  vec3 light = mix(around, wall, exp(-undrawn_rain_depth(reach)));
   for (uint i = 0u; i < frame.counts.x; ++i) light += glow(lights[i], place / reach, reach);
   imageStore(colour, pixel, vec4(light, 1.0));
 }

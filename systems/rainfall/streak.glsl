@@ -10,9 +10,7 @@ uniform bool use_occlusion;
 #include "systems/rainfall/field.glsl"
 
 #ifdef LAMPS
-layout(std430, binding = RAIN_OPTICS_BINDING) readonly buffer RainOptics {
-  float phase[RAIN_PHASE_BINS];
-};
+#include "systems/rainfall/lamp_light.glsl"
 #endif
 uniform vec3 distances;  // nearest axial distance, start and end of the fade, m
 
@@ -78,8 +76,7 @@ vec3 lamp_light(LightGpu light, vec3 at, float distance_to_eye) {
   strength = directional ? 1.0 : strength;
   // The turn from the light's direction to the eye's: 0 where the drop stands before the lamp.
   float cosine = -dot(direction, at) / distance_to_eye;
-  uint bin = min(uint(sqrt(max(0.5 - 0.5 * cosine, 0.0)) * float(RAIN_PHASE_BINS)), uint(RAIN_PHASE_BINS - 1));
-  return light.intensity_radius.rgb * (strength * phase[bin]);
+  return light.intensity_radius.rgb * (strength * drop_phase(cosine));
 }
 
 // The same after mist and undrawn drops on the way to the eye, in output units.

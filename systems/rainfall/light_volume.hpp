@@ -1,0 +1,14 @@
+#pragma once
+// Pass rain_light: the light of lamps on falling drops, in a coarse volume of the view (light_volume.glsl).
+
+#include <memory>
+
+#include "engine/graph/graph.hpp"
+#include "systems/rainfall/optics.hpp"
+
+namespace petrichor {
+
+// Slot rain_light: an rgba16f array, as many slices as it has layers.
+PassOffer rain_light_pass(std::shared_ptr<RainOptics>);
+
+}  // namespace petrichor
