@@ -21,8 +21,8 @@ std::string quoted(const std::string& text) {  // for gnuplot, in double quotes
 
 std::string table(const Chart& chart) {
   const std::vector<bool> hull = on_hull(chart.points);
-  std::string text = fmt::format("# {}, {}x{}, {}; error of two truths of other seeds: {:.5f}\n", chart.title, chart.width,
-                                 chart.height, chart.device, chart.floor);
+  std::string text = fmt::format("# {}, {}x{}, {}; error of two truths of other seeds: {:.5f}\n", chart.title,
+                                 chart.width, chart.height, chart.device, chart.floor);
   text += "rung,setting,ms,ms_p5,ms_p95,error,mean_shift,stable,on_hull";
   if (!chart.points.empty())
     for (const auto& [name, value] : chart.points.front().more) text += "," + name;
@@ -58,7 +58,8 @@ std::string picture(const std::filesystem::path& folder, const Chart& chart) {
     labels += fmt::format("{} {} {}\n", p.ms, shown(p), quoted(p.label.empty() ? name : name + ", " + p.label));
   }
   double low = 1e9, high = 0.0;
-  for (const ChartPoint& p : chart.points) low = std::min({low, p.ms, p.ms_p5}), high = std::max({high, p.ms, p.ms_p95});
+  for (const ChartPoint& p : chart.points)
+    low = std::min({low, p.ms, p.ms_p5}), high = std::max({high, p.ms, p.ms_p95});
   std::string text;
   for (const auto& [terminal, extension] : {std::pair{"svg size 1000,680 background '#ffffff' font 'sans,12'", "svg"},
                                             std::pair{"pngcairo size 1000,680 font 'sans,11'", "png"}}) {
@@ -68,7 +69,7 @@ std::string picture(const std::filesystem::path& folder, const Chart& chart) {
     text += fmt::format("set xlabel {} noenhanced\nset ylabel {} noenhanced\n", quoted(chart.x_label),
                         quoted(chart.error_label));
     text += "set logscale xy\nset grid lc rgb '#dddddd'\nset key bottom left\n";
-    text += fmt::format("set xrange [{}:{}]\nset offsets 0,0,0.1,0.1\n", std::max(low, 1e-4) * 0.6,
+    text += fmt::format("set xrange [{}:{}]\n", std::max(low, 1e-4) * 0.6,
                         std::max(high, 1e-4) * 3.0);
     if (chart.floor > 0.0) text += fmt::format("floor = {}\n", chart.floor);
     text +=

@@ -12,24 +12,24 @@ namespace petrichor {
 
 // One rung at one setting.
 struct ChartPoint {
-  std::string rung;   // of the ladder
-  std::string label;  // beside the mark: the setting ("30 k drops", "as published")
+  std::string rung;                            // of the ladder
+  std::string label;                           // beside the mark: the setting ("30 k drops", "as published")
   double ms = 0.0, ms_p5 = 0.0, ms_p95 = 0.0;  // median of the frames timed; the bar
-  double error = 0.0;      // the effect left out: 1
-  double mean_shift = 0.0; // of the time-mean picture, as a share of the background; 0 where that means nothing
-  bool stable = true;      // false: fails a test of tests/stability or moves the mean: a hollow mark
+  double error = 0.0;                          // the effect left out: 1
+  double mean_shift = 0.0;  // of the time-mean picture, as a share of the background; 0 where that means nothing
+  bool stable = true;       // false: fails a test of tests/stability or moves the mean: a hollow mark
   std::vector<std::pair<std::string, double>> more;  // further columns, the same for all points of a chart
 };
 
 struct Chart {
-  std::string name;     // of the files: "rainfall-night"
-  std::string effect;   // of the ladder: "rainfall"
-  std::string title;    // "Falling rain, 10 mm/h, night lamps"
+  std::string name;    // of the files: "rainfall-night"
+  std::string effect;  // of the ladder: "rainfall"
+  std::string title;   // "Falling rain, 10 mm/h, night lamps"
   std::string device;
   int width = 0, height = 0;
   std::string x_label = "milliseconds (median; bar 5% to 95%)";
   std::string error_label = "error (the effect left out: 1)";
-  double floor = 0.0;   // error of two truths of other seeds; 0: none, the truth is not random
+  double floor = 0.0;  // error of two truths of other seeds; 0: none, the truth is not random
   std::vector<ChartPoint> points;
 };
 

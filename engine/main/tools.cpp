@@ -19,6 +19,7 @@
 #include "engine/main/world.hpp"
 #include "engine/script/reference.hpp"
 #include "systems/rainfall/bench.hpp"
+#include "systems/rainfall/bench_rungs.hpp"
 #include "systems/rainfall/measure.hpp"
 
 namespace petrichor {
@@ -64,7 +65,7 @@ Result<std::vector<std::string>> pick(const std::vector<std::string>& asked, con
 }  // namespace
 
 Result<void> bench(const BenchOptions& options) {
-  const auto names = pick(options.names, {"ecs", "rain"}, "benchmark");
+  const auto names = pick(options.names, {"ecs", "rain", "rungs"}, "benchmark");
   if (!names) return tl::unexpected(names.error());
   std::vector<BenchRow> rows;
   for (const std::string& name : *names) {
@@ -74,8 +75,10 @@ Result<void> bench(const BenchOptions& options) {
       auto renderer = open_renderer(false, {});
       if (!renderer) return tl::unexpected(renderer.error());
       log_info("{}", (*renderer)->device.renderer);
-      auto measured =
-          bench_rain(options.drops, options.width, options.height, options.frames, (*renderer)->device.software);
+      const bool software = (*renderer)->device.software;
+      auto measured = name == "rungs" ? bench_rungs(options.width, options.height, options.frames, software,
+                                                    affordable_drops((*renderer)->device))
+                                      : bench_rain(options.drops, options.width, options.height, options.frames, software);
       if (!measured) return tl::unexpected(measured.error());
       for (BenchRow& row : *measured) rows.push_back(std::move(row));
     }

@@ -5,11 +5,10 @@
 
 namespace petrichor {
 
-// Draws rain at 10 mm/h before an even wall and three lamps by fog alone and by the drop field at several distances
-// and budgets, and compares each with the truth: every drop to the wall, the mean of 64 instants of the
-// exposure. Rain is random, so pictures are compared by their mean and their standard deviation over time, with the
-// same drops where a technique draws drops; the floor is what two truths of other seeds differ by. Writes
-// rainfall.csv, and with gnuplot rainfall.svg and rainfall.png. `device` is for the title. progress gets 0 to 1.
+// Every rung of the ladder, with its published settings and several budgets, in three scenes (day street, night lamps,
+// storm), against every drop at 64 instants of the exposure. Rain is random, so pictures are compared by what is fair
+// (systems/rainfall/studio.hpp); the floor is what two truths of other seeds differ by. Writes rainfall-day,
+// rainfall-night and rainfall-storm.
 Result<void> chart_rainfall(const ChartRun&);
 
 }  // namespace petrichor

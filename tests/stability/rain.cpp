@@ -7,6 +7,7 @@
 #include "engine/platform/context.hpp"
 #include "systems/rainfall/extract.hpp"
 #include "systems/rainfall/passes.hpp"
+#include "systems/rainfall/rain_shared.h"
 #include "systems/rainfall/stage.hpp"
 
 namespace petrichor {
@@ -224,6 +225,56 @@ TEST_F(RainStability, HundredThousandDropsInAPixel) {
     const double opacity = 1.0 - expected_transmittance(frame.rain->drawn_extinction_per_m, 22.0, view);
     EXPECT_NEAR(mean_of(light), most * opacity, 0.06 * most * opacity) << path;
   }
+}
+
+TEST_F(RainStability, TenMillionDropsInOnePixel) {
+  // Fails if the 16-bit sum of optical depths wraps, or loses drops of some 1e-5 units: one pixel takes them all.
+  const View view{.width = 1, .height = 1, .fov_deg = 60.0f};
+  const Emitter emitter = rain_of(200.0f);
+  const float wall_m = 22.0f;
+  const auto clear = stage(wall_m, 0);
+  Frame frame = frame_of(view, 11.0);
+  rain_on(frame, emitter, wall_m);
+  const double transmittance = mean_of(light_of(*clear, frame));
+  EXPECT_GT(rain_stats(frame).drops_drawn, 10'000'000u);
+  const double truth = expected_transmittance(frame.rain->extinction_per_m, wall_m, view);
+  // One sum of some units by chance: four deviations of the Poisson count of units.
+  const double units = -std::log(truth) * RAIN_DEPTH_ONE;
+  EXPECT_NEAR(transmittance, truth, 4.0 * std::sqrt(units) / RAIN_DEPTH_ONE + 0.002);
+  // The headroom is the physics': the heaviest rain through the longest way that can be asked for.
+  const Emitter most = rain_of(300.0f);
+  rain_on(frame, most, 500.0f);
+  EXPECT_LT(frame.rain->drawn_extinction_per_m * 500.0 * RAIN_DEPTH_ONE, 0.5 * 65535.0);
+}
+
+TEST_F(RainStability, RateStepsFrom0To200MillimetresPerHour) {
+  // Fails if drops jump when the rate does: those of the weaker rain must all still be there, at their places, in the
+  // stronger one; so light that they block stays blocked.
+  const View view;
+  const auto clear = stage(12.0f, 0);
+  std::vector<float> before;
+  for (const float rate : {0.5f, 5.0f, 50.0f, 200.0f}) {
+    Frame frame = frame_of(view, 7.0);
+    rain_on(frame, rain_of(rate), 12.0f);
+    const std::vector<float> light = light_of(*clear, frame);
+    const double truth = expected_transmittance(frame.rain->extinction_per_m, 12.0, view);
+    EXPECT_NEAR(mean_of(light), truth, 0.15 * (1.0 - truth) + 1e-4) << rate;
+    if (!before.empty()) {
+      // A pixel may be brighter than in weaker rain only by the rounding of its sum (a unit each way).
+      int brighter = 0, darkened = 0;
+      for (std::size_t p = 0; p < light.size(); p += 4) {
+        if (before[p] > 0.99f) continue;  // a streak stands here
+        ++darkened;
+        brighter += light[p] > before[p] + 0.003f;
+      }
+      ASSERT_GT(darkened, 20) << rate;
+      EXPECT_LT(brighter, darkened / 50 + 1) << rate;
+    }
+    before = light;
+  }
+  Frame dry = frame_of(view, 7.0);
+  rain_on(dry, rain_of(0.0f), 12.0f);
+  EXPECT_NEAR(mean_of(light_of(*clear, dry)), 1.0, 1e-3);
 }
 
 }  // namespace
