@@ -8,6 +8,7 @@
 #include <optional>
 #include <vector>
 
+#include "components/weather.hpp"
 #include "systems/frame_shared.h"
 #include "systems/rain_frame.hpp"
 #include "systems/snow_frame.hpp"
@@ -75,6 +76,7 @@ struct Frame {
   std::uint64_t geometry_version = 0;
   std::uint64_t lights_version = 0;
   std::optional<FrameRain> rain;            // absent, or its rate 0: no rain pass runs
+  std::optional<Wind> wind;                 // as the scene says; absent: only what the rain and snow know of it
   std::optional<FrameSnow> snow;            // absent, or its rate 0: no snow pass runs
   std::int32_t affordable_drops = 4000000;  // for an emitter that names no budget of its own
   GpuScene* scene = nullptr;

@@ -19,7 +19,10 @@ using uint = std::uint32_t;
 #define FRAME_UNIFORMS_BINDING 0  // uniform block FrameBlock { FrameUniforms frame; }
 #define LIGHTS_BINDING 0          // buffer, LightGpu lights[]
 #define OCCLUSION_UNIFORMS_BINDING 1  // uniform block, OcclusionUniforms (systems/occlusion)
-#define OCCLUSION_UNIT 15         // texture unit of the occlusion map in shaders that include occlusion.glsl
+#define OCCLUSION_MAPS 16         // at most
+#define OCCLUSION_UNIT 15         // texture unit of the occlusion maps in shaders that include occlusion.glsl
+
+#define RAIN_ONSET_PAIRS 7
 
 #define LIGHT_POINT 0
 #define LIGHT_SPOT 1
@@ -44,9 +47,10 @@ struct FrameUniforms {
   vec4 rain;                     // extinction 1/m of the drops that are not drawn singly beyond .y m, .y the mean of
                                  // the distances where they begin; .z extinction 1/m of what is drawn at no distance:
                                  // drops too small, and the share of fog alone; .w rain rate mm/h
-  vec4 rain_onsets[4];           // two techniques or groups of classes each: extinction 1/m of the drops that are drawn
+  vec4 rain_onsets[RAIN_ONSET_PAIRS];  // the first four of rain, the others of snow; counts.z are in use. Each two
+                                 // techniques or groups of classes: extinction 1/m of the drops that are drawn
                                  // singly out to a distance, that distance m; and again. undrawn_rain_depth() reads it
-  uvec4 counts;                  // lights, instances, 0, 0
+  uvec4 counts;                  // lights, instances, rain_onsets, 0
 };
 
 // Camera-relative position. Intensities are cd (lux where directional), colour included.
@@ -57,17 +61,19 @@ struct LightGpu {
   vec4 cone_shadow;       // spot attenuation scale and offset (KHR_lights_punctual), z: shadow slot or -1, w: lights rain (0/1)
 };
 
-// The map of shelter: scene depth along the fall direction of the precipitation.
+// The maps of shelter: scene depth along the fall directions of the precipitation, a layer each.
 struct OcclusionUniforms {
-  mat4 map_from_relative;  // camera-relative world -> xy texture coordinates in 0..1, z metres along the fall
-  vec4 fall_texel;         // xyz unit fall direction in the world, w: texel edge, m; 0: there is no map
-  vec4 size_depth;         // x texels per side, y metres from depth 1 (upper end) to depth 0, z bias, m, w 0
+  mat4 map_from_relative[OCCLUSION_MAPS];  // camera-relative world -> xy texture coordinates in 0..1, z metres along the fall
+  vec4 fall_texel[OCCLUSION_MAPS];  // xyz unit fall direction in the world, w: texel edge, m; 0: there is no map
+  vec4 size_depth[OCCLUSION_MAPS];  // x texels per side, y metres from depth 1 (upper end) to depth 0, z bias, m,
+                                    // w share of the precipitation that falls about this way
+  uvec4 counts;                     // maps; the one nearest to the mean fall; 0, 0
 };
 
 #ifdef __cplusplus
-static_assert(sizeof(FrameUniforms) == 4 * 64 + 14 * 16);
+static_assert(sizeof(FrameUniforms) == 4 * 64 + (10 + RAIN_ONSET_PAIRS) * 16);
 static_assert(sizeof(LightGpu) == 64);
-static_assert(sizeof(OcclusionUniforms) == 96);
+static_assert(sizeof(OcclusionUniforms) == 96 * OCCLUSION_MAPS + 16);
 }  // namespace petrichor
 #endif
 #endif

@@ -14,7 +14,8 @@ local resources = {
   emissive = { format = "r11f_g11f_b10f" },
 
   -- Kept while nothing moves.
-  occlusion_map = { format = "depth32f", width = 1024, height = 1024, persistent = true },  -- shelter from the rain
+  -- Shelter from rain and snow; a layer for each map that occlusion=jittered may draw.
+  occlusion_map = { format = "depth32f", width = 1024, height = 1024, layers = 8, persistent = true },
   shadow_atlas  = { format = "rgba32f", width = 2048, height = 2048, persistent = true },   -- 16 lamps of 512x512
 
   environment = { format = "rgba16f", width = 448, height = 65 },  -- the street all round, blurred in steps

@@ -1,40 +1,96 @@
 #include "systems/occlusion/occlusion.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <memory>
 
+#include "components/weather.hpp"
+#include "engine/ecs/registry.hpp"
 #include "systems/gpu_scene.hpp"
+#include "systems/occlusion/falls.hpp"
 
 namespace petrichor {
 namespace {
 
-// Metres to the lattice on which the map's ends lie, so that rounding of the scene's box does not move them.
-constexpr double end_step_m = 8.0;
-constexpr double end_margin_m = 1.37;  // no round number: roofs and floors are often at whole metres
+struct DrawnMap {
+  OcclusionPlacement placement;
+  Framebuffer layer;
+  bool drawn = false;
+};
 
 struct MapState {
-  OcclusionPlacement placement;
+  std::vector<DrawnMap> maps;
+  GLuint texture = 0;
   std::uint64_t geometry_version = 0;
   const GpuScene* scene = nullptr;
-  bool drawn = false;
   Buffer uniforms;
+  std::vector<float> asked;  // of chosen_falls, and its answer: the weather seldom changes from frame to frame
+  std::vector<FallShare> falls;
 };
+
+OcclusionRung rung_of(const Frame& frame) {
+  const Choice& c = frame.techniques[Effect::occlusion];
+  return static_cast<OcclusionRung>(c.blend >= 0.5f ? c.rung : c.from);
+}
+
+std::vector<float> question(const Frame& frame, int count) {
+  std::vector<float> all{static_cast<float>(count)};
+  if (frame.wind) {
+    const Wind& w = *frame.wind;
+    all.insert(all.end(),
+               {w.velocity_mps.x, w.velocity_mps.y, w.velocity_mps.z, w.gust_mps, w.gust_period_s, w.swirl_mps});
+  }
+  const auto add = [&](float rate, float number, float diameter, float speed, const glm::vec3& velocity) {
+    all.insert(all.end(), {rate, number, diameter, speed});
+    if (!frame.wind) all.insert(all.end(), {velocity.x, velocity.y, velocity.z});
+  };
+  if (frame.rain)
+    for (const RainClass& c : frame.rain->classes)
+      add(frame.rain->rain_mm_per_hour, c.drops_per_m3, c.diameter_mm, c.fall_speed_mps, c.velocity_mps);
+  if (frame.snow)
+    for (const SnowClass& c : frame.snow->classes)
+      add(frame.snow->snow_mm_per_hour, c.flakes_per_m3, c.diameter_mm, c.fall_speed_mps, c.velocity_mps);
+  return all;
+}
+
+// The directions of this frame's maps and their shares: on the lattice, each once.
+std::vector<FallShare> directions(const PassContext& context, MapState& state, int most) {
+  const Frame& frame = context.frame;
+  const OcclusionRung rung = rung_of(frame);
+  if (rung == OcclusionRung::vertical) return {{{0.0f, -1.0f, 0.0f}, 1.0f}};
+  const float tolerance = glm::radians(context.parameter("tolerance_deg"));
+  if (rung == OcclusionRung::tilted) return {{lattice_direction(mean_fall(frame), tolerance), 1.0f}};
+  const int count = std::clamp(static_cast<int>(std::lround(context.parameter("maps"))), 1, most);
+  if (std::vector<float> asked = question(frame, count); asked != state.asked) {
+    state.asked = std::move(asked);
+    state.falls = chosen_falls(frame, count);
+  }
+  std::vector<FallShare> found;
+  for (const FallShare& f : state.falls) {
+    const glm::vec3 way = lattice_direction(f.velocity_mps, tolerance);
+    const auto same =
+        std::find_if(found.begin(), found.end(), [&](const FallShare& g) { return g.velocity_mps == way; });
+    if (same != found.end())
+      same->share += f.share;  // in still air all fall straight down: one map is enough
+    else
+      found.push_back({way, f.share});
+  }
+  return found;
+}
 
 // Drawn about the map's own middle, not about the camera: rounding, and so every texel, is the same whichever frame
 // happens to draw it. A range of frames is then the same bytes as a part of a longer run.
-void redraw(PassContext& context, const OcclusionPlacement& p) {
+void redraw(PassContext& context, const DrawnMap& map) {
+  const OcclusionPlacement& p = map.placement;
   Frame about_map;
   about_map.instances = context.frame.instances;
   about_map.camera.position_m = p.corner_m + glm::dvec3(p.right + p.up) * (0.5 * static_cast<double>(p.side_m)) +
                                 glm::dvec3(p.fall) * (0.5 * static_cast<double>(p.depth_m));
   GpuScene& scene = *context.frame.scene;
   upload_instances(scene, about_map);
-  context.bind_framebuffer({}, "occlusion_map");
+  glBindFramebuffer(GL_FRAMEBUFFER, map.layer);
   glViewport(0, 0, p.texels, p.texels);
-  glEnable(GL_DEPTH_TEST);
-  glDepthFunc(GL_GREATER);
-  glDepthMask(GL_TRUE);
-  glDisable(GL_CULL_FACE);  // a roof shelters whichever way its triangles face
   const float nothing = 0.0f;
   glClearBufferfv(GL_DEPTH, 0, &nothing);
   const glm::mat4 clip = occlusion_clip(p, about_map.camera.position_m);
@@ -42,39 +98,82 @@ void redraw(PassContext& context, const OcclusionPlacement& p) {
   program.use();
   program.set("clip_from_relative", clip);
   draw_instances(scene, about_map, clip, DrawWhat::shelter);
-  glDisable(GL_DEPTH_TEST);
-  upload_instances(scene, context.frame);  // what the other passes draw is relative to the camera
 }
 
-void draw_map(PassContext& context, MapState& state) {
+// A framebuffer for each layer of the maps' texture.
+void take_texture(MapState& state, const Texture& texture, bool fresh) {
+  const auto layers = static_cast<std::size_t>(std::min(texture.layers, OCCLUSION_MAPS));
+  if (!fresh && state.texture == texture.id && state.maps.size() == layers) return;
+  state.texture = texture.id;
+  state.maps.clear();
+  state.maps.resize(layers);
+  for (std::size_t i = 0; i < layers; ++i) {
+    GLuint id = 0;
+    glCreateFramebuffers(1, &id);
+    state.maps[i].layer = Framebuffer(id);
+    glNamedFramebufferTextureLayer(id, GL_DEPTH_ATTACHMENT, texture.id, 0, static_cast<GLint>(i));
+    glNamedFramebufferDrawBuffer(id, GL_NONE);
+    glNamedFramebufferReadBuffer(id, GL_NONE);
+  }
+}
+
+void draw_maps(PassContext& context, MapState& state) {
   const Frame& frame = context.frame;
+  const Texture& texture = context.texture("occlusion_map");
+  take_texture(state, texture, context.fresh("occlusion_map"));
   glm::vec3 low, high;
   OcclusionUniforms uniforms{};
-  const bool anything = frame.scene && scene_bounds(*frame.scene, low, high);
-  if (anything) {
-    const glm::vec3 fall =
-        lattice_direction(frame.rain->mean_velocity_mps, glm::radians(context.parameter("tolerance_deg")));
-    const int texels = context.texture("occlusion_map").width;
-    const OcclusionPlacement placement = place_occlusion_map(frame.camera.position_m, fall, context.parameter("side_m"),
-                                                             texels, context.parameter("step_m"), low, high);
-    const bool stale = context.fresh("occlusion_map") || !state.drawn || state.placement != placement ||
-                       state.geometry_version != frame.geometry_version || state.scene != frame.scene;
-    if (stale) {
-      redraw(context, placement);
-      state.placement = placement;
-      state.geometry_version = frame.geometry_version;
-      state.scene = frame.scene;
-      state.drawn = true;
+  if (frame.scene && scene_bounds(*frame.scene, low, high)) {
+    if (state.geometry_version != frame.geometry_version || state.scene != frame.scene)
+      for (DrawnMap& map : state.maps) map.drawn = false;
+    state.geometry_version = frame.geometry_version;
+    state.scene = frame.scene;
+    const std::vector<FallShare> falls = directions(context, state, static_cast<int>(state.maps.size()));
+    const float step = context.parameter("step_m"),
+                texel_m = context.parameter("side_m") / static_cast<float>(texture.width);
+    const bool published = context.parameter("published") != 0.0f;
+    const glm::vec3 mean = mean_fall(frame);
+    bool drew = false;
+    for (std::size_t i = 0; i < falls.size(); ++i) {
+      DrawnMap& map = state.maps[i];
+      // Each map steps elsewhere, so that a walk redraws them one by one; the shifts are no whole texels either, so
+      // that the steps of the maps' edges do not fall together. (The plastic number's sequence covers the plane
+      // evenly.)
+      const double n = static_cast<double>(i);
+      const glm::dvec2 shift =
+          glm::dvec2(std::fmod(n * 0.7548776662, 1.0), std::fmod(n * 0.5698402910, 1.0)) * double(step);
+      const OcclusionPlacement placement =
+          place_occlusion_map(frame.camera.position_m, falls[i].velocity_mps, context.parameter("side_m"),
+                              texture.width, step, low, high, shift);
+      if (!map.drawn || map.placement != placement) {
+        if (!drew) {
+          glEnable(GL_DEPTH_TEST);
+          glDepthFunc(GL_GREATER);
+          glDepthMask(GL_TRUE);
+          glDisable(GL_CULL_FACE);  // a roof shelters whichever way its triangles face
+          drew = true;
+        }
+        map.placement = placement;
+        map.drawn = true;
+        redraw(context, map);
+      }
+      // Level ground changes its depth along the fall by tan(tilt) per metre: half a texel's diagonal of that is
+      // what a texel's centre may differ from the place itself. Chen compares the depths as they are.
+      const glm::vec3& fall = placement.fall;
+      const float down = std::max(-fall.y, 0.1f);
+      const float steepness = std::sqrt(std::max(1.0f - down * down, 0.0f)) / down;
+      const float bias_m = published ? 0.0f : context.parameter("bias_m") + 0.71f * texel_m * steepness;
+      uniforms.map_from_relative[i] = occlusion_matrix(placement, frame.camera.position_m);
+      uniforms.fall_texel[i] = {fall, texel_m};
+      uniforms.size_depth[i] = {static_cast<float>(texture.width), placement.depth_m, bias_m, falls[i].share};
+      const glm::vec3 nearest = uniforms.fall_texel[uniforms.counts.y];
+      if (glm::dot(fall, mean) > glm::dot(nearest, mean)) uniforms.counts.y = static_cast<std::uint32_t>(i);
     }
-    const float texel_m = placement.side_m / static_cast<float>(texels);
-    // Level ground changes its depth along the fall by tan(tilt) per metre: half a texel's diagonal of that is
-    // what a texel's centre may differ from the place itself.
-    const float down = std::max(-fall.y, 0.1f);
-    const float steepness = std::sqrt(std::max(1.0f - down * down, 0.0f)) / down;
-    uniforms.map_from_relative = occlusion_matrix(placement, frame.camera.position_m);
-    uniforms.fall_texel = {fall, texel_m};
-    uniforms.size_depth = {static_cast<float>(texels), placement.depth_m,
-                           context.parameter("bias_m") + 0.71f * texel_m * steepness, 0.0f};
+    uniforms.counts.x = static_cast<std::uint32_t>(falls.size());
+    if (drew) {
+      glDisable(GL_DEPTH_TEST);
+      upload_instances(*frame.scene, frame);  // what the other passes draw is relative to the camera
+    }
   }
   upload(state.uniforms, &uniforms, sizeof uniforms);
   glBindBufferRange(GL_UNIFORM_BUFFER, OCCLUSION_UNIFORMS_BINDING, state.uniforms.id, 0, sizeof uniforms);
@@ -82,66 +181,11 @@ void draw_map(PassContext& context, MapState& state) {
 
 }  // namespace
 
-glm::vec3 lattice_direction(const glm::vec3& fall, float tolerance_rad) {
-  const float length = glm::length(fall);
-  if (!(length > 0.0f)) return {0.0f, -1.0f, 0.0f};
-  const glm::vec3 d = fall / length;
-  // Tilt as a flat vector: its length is the angle from straight down. Half a cell's diagonal is the tolerance.
-  const float sine = std::hypot(d.x, d.z);
-  const float angle = std::atan2(sine, -d.y);
-  glm::vec2 tilt = sine > 1e-9f ? glm::vec2(d.x, d.z) / sine * angle : glm::vec2(0.0f);
-  if (tolerance_rad > 0.0f) tilt = glm::round(tilt / (1.41421356f * tolerance_rad)) * (1.41421356f * tolerance_rad);
-  const float snapped = glm::length(tilt);
-  if (snapped < 1e-9f) return {0.0f, -1.0f, 0.0f};
-  const glm::vec2 way = tilt / snapped * std::sin(snapped);
-  return {way.x, -std::cos(snapped), way.y};
-}
-
-OcclusionPlacement place_occlusion_map(const glm::dvec3& camera_m, const glm::vec3& fall, float side_m, int texels,
-                                       float step_m, const glm::vec3& low_m, const glm::vec3& high_m) {
-  OcclusionPlacement p;
-  p.fall = fall;
-  p.side_m = side_m;
-  p.texels = texels;
-  // Along x as far as the fall lets it; falling along x itself, along z.
-  const glm::vec3 reference = std::abs(fall.x) < 0.9f ? glm::vec3(1.0f, 0.0f, 0.0f) : glm::vec3(0.0f, 0.0f, 1.0f);
-  p.right = glm::normalize(reference - fall * glm::dot(reference, fall));
-  p.up = glm::cross(-p.fall, p.right);
-
-  // Whole texels, so that what is redrawn falls on the same samples.
-  const double texel = static_cast<double>(side_m) / texels;
-  const double step = std::max(1.0, std::round(step_m / texel)) * texel;
-  const auto snapped = [&](const glm::vec3& axis) {
-    return std::round(glm::dot(camera_m, glm::dvec3(axis)) / step) * step - 0.5 * side_m;
-  };
-  const glm::dvec3 centre = glm::dvec3(0.5f * (low_m + high_m)) + camera_m;
-  const double reach = glm::dot(glm::dvec3(0.5f * (high_m - low_m)), glm::abs(glm::dvec3(fall)));
-  const double middle = glm::dot(centre, glm::dvec3(fall));
-  const double upper = std::floor((middle - reach - end_margin_m) / end_step_m) * end_step_m;
-  const double lower = std::ceil((middle + reach + end_margin_m) / end_step_m) * end_step_m;
-  p.depth_m = static_cast<float>(lower - upper);
-  p.corner_m = glm::dvec3(p.right) * snapped(p.right) + glm::dvec3(p.up) * snapped(p.up) + glm::dvec3(p.fall) * upper;
-  return p;
-}
-
-glm::mat4 occlusion_matrix(const OcclusionPlacement& p, const glm::dvec3& camera_m) {
-  const glm::dvec3 origin = camera_m - p.corner_m;
-  const glm::dvec3 right = glm::dvec3(p.right) / static_cast<double>(p.side_m);
-  const glm::dvec3 up = glm::dvec3(p.up) / static_cast<double>(p.side_m);
-  const glm::dvec3 fall(p.fall);
-  glm::dmat4 rows(1.0);
-  rows[0] = glm::dvec4(right, glm::dot(right, origin));
-  rows[1] = glm::dvec4(up, glm::dot(up, origin));
-  rows[2] = glm::dvec4(fall, glm::dot(fall, origin));
-  return glm::mat4(glm::transpose(rows));
-}
-
-glm::mat4 occlusion_clip(const OcclusionPlacement& p, const glm::dvec3& camera_m) {
-  glm::mat4 clip_from_map(1.0f);
-  clip_from_map[0][0] = clip_from_map[1][1] = 2.0f;
-  clip_from_map[2][2] = -1.0f / p.depth_m;
-  clip_from_map[3] = {-1.0f, -1.0f, 1.0f, 1.0f};
-  return clip_from_map * occlusion_matrix(p, camera_m);
+void extract_wind(const Registry& registry, Frame& frame) {
+  Entity first{};
+  registry.view<Wind>().each([&](Entity e, const Wind& found) {
+    if (!frame.wind || entity_index(e) < entity_index(first)) first = e, frame.wind = found;
+  });
 }
 
 Ladder occlusion_ladder() {
@@ -153,8 +197,8 @@ Ladder occlusion_ladder() {
   l.error_measure = "root mean square of the share of rain that arrives, 0 to 1";
   l.rungs = {{"vertical", "one map, seen from straight above (Chen)", {"occlusion_map"}},
              {"tilted", "one map, seen along the mean fall", {"occlusion_map"}},
-             {"jittered", "several maps, seen along falls of drops of all sizes", {"occlusion_map"}}};
-  l.coverage = [](const Frame& frame) { return frame.rain && frame.rain->rain_mm_per_hour > 0.0f ? 0.2 : 0.0; };
+             {"jittered", "several maps, seen along the falls of drops of all sizes and of gusts", {"occlusion_map"}}};
+  l.coverage = [](const Frame& frame) { return precipitates(frame) ? 0.2 : 0.0; };
   l.directed = false;
   return l;
 }
@@ -163,12 +207,17 @@ std::vector<PassOffer> occlusion_passes() {
   auto state = std::make_shared<MapState>();
   std::vector<PassOffer> offers;
   offers.push_back({"occlusion_map",
-                    "depth along the fall of the rain: what is under a roof",
+                    "depth along the fall of rain and snow, a layer for each of several falls: what is under a roof",
                     {{"occlusion_map", SlotAccess::write}},
-                    {{"side_m", 128.0}, {"step_m", 16.0}, {"tolerance_deg", 0.5}, {"bias_m", 0.02}},
+                    {{"side_m", 128.0},
+                     {"step_m", 16.0},
+                     {"tolerance_deg", 0.5},
+                     {"bias_m", 0.02},
+                     {"maps", 8.0},
+                     {"published", 0.0}},
                     {{"depth", {{"systems/geometry/depth.vert.glsl", "systems/geometry/depth.frag.glsl"}, {}}}},
-                    [](const Frame& frame) { return frame.rain && frame.rain->rain_mm_per_hour > 0.0f; },
-                    [state](PassContext& context) { draw_map(context, *state); }});
+                    precipitates,
+                    [state](PassContext& context) { draw_maps(context, *state); }});
   return offers;
 }
 

@@ -1,47 +1,29 @@
 #pragma once
-// One orthographic depth map of the scene, seen from where the precipitation comes from: what is sheltered, and where
-// a drop's path first meets something (design, section 5).
+// Orthographic depth maps of the scene, seen from where the precipitation comes from: what is sheltered, and where a
+// drop's path first meets something (design, section 5). Effect::occlusion says how many and along which falls.
 
-#include <cstdint>
-#include <glm/glm.hpp>
 #include <vector>
 
+#include "engine/ecs/registry.hpp"
 #include "engine/graph/graph.hpp"
 #include "systems/frame.hpp"
 #include "systems/ladder.hpp"
+#include "systems/occlusion/placement.hpp"
 
 namespace petrichor {
 
-// Where a map lies: a square prism along `fall`, in the world. Equal placements show the same picture.
-struct OcclusionPlacement {
-  glm::vec3 fall{0.0f, -1.0f, 0.0f};  // unit, the way the precipitation moves
-  glm::dvec3 corner_m{0.0};           // world position of texture (0, 0) at the upper end
-  glm::vec3 right{1.0f, 0.0f, 0.0f};  // unit, along texture x
-  glm::vec3 up{0.0f, 0.0f, -1.0f};    // unit, along texture y; right x up = -fall
-  float side_m = 128.0f;
-  float depth_m = 100.0f;  // from the upper end to the lower
-  int texels = 1024;
-  friend bool operator==(const OcclusionPlacement&, const OcclusionPlacement&) = default;
-};
+// frame.wind: the scene's wind, of which the maps of OcclusionRung::jittered know the gusts.
+void extract_wind(const Registry&, Frame&);
 
-// A map around a camera. The direction is the given one; the corner is snapped to a lattice of step_m that is fixed in
-// the world, so a moving camera keeps the same texels until it has gone step_m. low and high: what the map must hold
-// along the fall (the scene's box, relative to the camera).
-OcclusionPlacement place_occlusion_map(const glm::dvec3& camera_m, const glm::vec3& fall, float side_m, int texels,
-                                       float step_m, const glm::vec3& low_m, const glm::vec3& high_m);
-
-// Camera-relative world -> texture coordinates x, y in 0..1 and metres along the fall from the upper end.
-glm::mat4 occlusion_matrix(const OcclusionPlacement&, const glm::dvec3& camera_m);
-// Camera-relative world -> clip space, depth 1 at the upper end and 0 at the lower.
-glm::mat4 occlusion_clip(const OcclusionPlacement&, const glm::dvec3& camera_m);
-
-// The direction that the map is drawn along: a fixed lattice point at most tolerance_rad from `fall`, so that gusts do
-// not redraw the map in every frame. No memory: a frame looks the same whichever frames came before. Straight down,
-// and the lattice, are exact for still air.
-glm::vec3 lattice_direction(const glm::vec3& fall, float tolerance_rad);
-
-// occlusion_map: runs where it rains. Slot occlusion_map: depth32f, square, of fixed size, persistent. Parameters:
-// side_m, step_m, tolerance_deg, bias_m.
+// occlusion_map: runs where it rains or snows. Slot occlusion_map: depth32f, square, of fixed size, persistent, with
+// layers (1 to OCCLUSION_MAPS; maps is capped by them). A map is redrawn when its direction, its place or the geometry
+// changed. Parameters:
+//   maps           of jittered; 8
+//   side_m         of each map; 128
+//   step_m         the camera's way after which a map moves; 16
+//   tolerance_deg  directions are held to a lattice this fine; 0.5
+//   bias_m         added to what a map's steepness makes of half a texel; 0.02
+//   published      1: depths are compared as Chen prints it, without any bias; 0
 std::vector<PassOffer> occlusion_passes();
 
 Ladder occlusion_ladder();

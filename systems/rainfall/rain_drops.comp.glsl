@@ -37,7 +37,7 @@ void main() {
     vec3 closed = corner_edge.xyz + corner_edge.w * place.xyz;
     Streak s;
     vec4 falls = layer.velocity_diameter;
-    if (!project(closed, place.w, layer.expected.z, falls.xyz, falls.w, s) || hidden(s)) continue;
+    if (!project(closed, place.w, layer.expected.z, falls.xyz, falls.w, s) || hidden(s, falls.xyz)) continue;
     drawn += 1u;
     drop_bits = bits;
 #ifdef LAMPS

@@ -16,7 +16,7 @@ bool draw_drop(RainCellGpu cell, RainLayerGpu layer, uint m) {
   vec3 closed = cell.corner_edge.xyz + cell.corner_edge.w * place.xyz;
   Streak s;
   vec4 falls = layer.velocity_diameter;
-  if (!project(closed, place.w, layer.expected.z, falls.xyz, falls.w, s) || hidden(s)) return false;
+  if (!project(closed, place.w, layer.expected.z, falls.xyz, falls.w, s) || hidden(s, falls.xyz)) return false;
   drop_bits = bits;
 #ifdef LAMPS
   float distance_to_eye = length(s.middle);

@@ -52,12 +52,14 @@ PassOffer map_offer(const StageSet& set) {
     constexpr float side = 128.0f, top = 64.0f;
     const Texture& map = context.texture("occlusion_map");
     OcclusionUniforms u{};
-    u.map_from_relative = glm::mat4(0.0f);
-    u.map_from_relative[0][0] = u.map_from_relative[2][1] = 1.0f / side;
-    u.map_from_relative[1][2] = -1.0f;
-    u.map_from_relative[3] = {0.5f, 0.5f, top, 1.0f};
-    u.fall_texel = {0.0f, -1.0f, 0.0f, side / static_cast<float>(map.width)};
-    u.size_depth = {static_cast<float>(map.width), side, 0.05f, 0.0f};
+    glm::mat4& from_relative = u.map_from_relative[0];
+    from_relative = glm::mat4(0.0f);
+    from_relative[0][0] = from_relative[2][1] = 1.0f / side;
+    from_relative[1][2] = -1.0f;
+    from_relative[3] = {0.5f, 0.5f, top, 1.0f};
+    u.fall_texel[0] = {0.0f, -1.0f, 0.0f, side / static_cast<float>(map.width)};
+    u.size_depth[0] = {static_cast<float>(map.width), side, 0.05f, 1.0f};
+    u.counts.x = 1;
     upload(*uniforms, &u, sizeof u);
     glBindBufferBase(GL_UNIFORM_BUFFER, OCCLUSION_UNIFORMS_BINDING, uniforms->id);
     const float roof = set.roof_m > 0.0f ? 1.0f - (top - set.roof_m) / side : 0.0f, open = 0.0f;
@@ -118,7 +120,7 @@ Result<void> RainStage::load() {
   }
   table["passes"] = Json::array({backdrop});
   if (set_.map) {
-    table["resources"]["map"] = {{"format", "depth32f"}, {"width", 1024}, {"height", 1024}};
+    table["resources"]["map"] = {{"format", "depth32f"}, {"width", 1024}, {"height", 1024}, {"layers", 1}};
     table["passes"].push_back({{"pass", "stage_map"}, {"occlusion_map", "map"}});
     splat["occlusion_map"] = "map";
   }

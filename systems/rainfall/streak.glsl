@@ -49,13 +49,13 @@ bool project(vec3 closed, float mark, float reach, vec3 velocity, float diameter
          all(lessThan(min(s.from, s.to) - s.radius, frame.size.xy));
 }
 
-bool hidden(Streak s) {
+bool hidden(Streak s, vec3 velocity) {
 #ifdef SCENE
   // A drop whose image is small is hidden where its middle is; long streaks are tested along their way.
   ivec2 pixel = ivec2(clamp(0.5 * (s.from + s.to), vec2(0.0), frame.size.xy - 1.0));
   vec2 span = abs(s.to - s.from);
   if (max(span.x, span.y) < 1.0 && max(s.depths.x, s.depths.y) < texelFetch(scene_depth, pixel, 0).r) return true;
-  return use_occlusion && sheltered(s.middle);
+  return use_occlusion && sheltered(s.middle, velocity);
 #else
   return false;
 #endif

@@ -107,7 +107,7 @@ class Occlusion : public testing::Test {
     };
     offers.push_back(ask);
     const auto table = nlohmann::json::parse(R"({
-      "resources": {"occlusion_map": {"format": "depth32f", "width": 1024, "height": 1024, "persistent": true},
+      "resources": {"occlusion_map": {"format": "depth32f", "width": 1024, "height": 1024, "layers": 1, "persistent": true},
                     "picture": {"format": "rgba8"}},
       "passes": [{"pass": "occlusion_map", "occlusion_map": "occlusion_map", "parameters": {"side_m": 64}},
                  {"pass": "ask", "occlusion_map": "occlusion_map"},
