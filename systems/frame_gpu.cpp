@@ -74,7 +74,9 @@ void finish_frame(Frame& frame) {
   u.sky_zenith = {frame.sky.zenith_cd_m2, frame.sky.ambient};
   u.sky_horizon = {frame.sky.horizon_cd_m2, frame.sky.glow_height};
   u.mist = {frame.mist.extinction_per_m, frame.mist.albedo};
+  static_assert(RAIN_ONSET_PAIRS == (rain_onsets + snow_onsets) / 2 && rain_onsets % 2 == 0);
   u.rain = glm::vec4(0.0f);
+  u.counts.z = 0;
   for (glm::vec4& onsets : u.rain_onsets) onsets = glm::vec4(0.0f);
   if (frame.rain && frame.rain->rain_mm_per_hour > 0.0f) {
     update_onsets(*frame.rain);
@@ -84,8 +86,21 @@ void finish_frame(Frame& frame) {
       u.rain_onsets[i / 2][2 * (i % 2)] = o.extinction_per_m;
       u.rain_onsets[i / 2][2 * (i % 2) + 1] = o.onset_m;
     }
+    u.counts.z = rain_onsets / 2;
   }
-  u.counts = {0, static_cast<std::uint32_t>(frame.instances.size()), 0, 0};
+  if (frame.snow && frame.snow->snow_mm_per_hour > 0.0f) {
+    update_onsets(*frame.snow);
+    glm::vec2 sum(u.rain.x, u.rain.x * u.rain.y);
+    for (int i = 0; i < snow_onsets; ++i) {
+      const RainOnset& o = frame.snow->onsets[i];
+      u.rain_onsets[(rain_onsets + i) / 2][2 * (i % 2)] = o.extinction_per_m;
+      u.rain_onsets[(rain_onsets + i) / 2][2 * (i % 2) + 1] = o.onset_m;
+      sum += glm::vec2(o.extinction_per_m, o.extinction_per_m * o.onset_m);
+    }
+    u.counts.z = (rain_onsets + snow_onsets) / 2;
+    u.rain = {sum.x, sum.x > 0.0f ? sum.y / sum.x : 0.0f, u.rain.z + frame.snow->fog_extinction_per_m, u.rain.w};
+  }
+  u.counts = {0, static_cast<std::uint32_t>(frame.instances.size()), u.counts.z, 0};
   u.counts.x = static_cast<std::uint32_t>(visible_lights(frame).size());
 }
 

@@ -8,11 +8,15 @@
 #include "systems/geometry/passes.hpp"
 #include "systems/image/passes.hpp"
 #include "systems/lighting/passes.hpp"
+#include "systems/occlusion/chart.hpp"
 #include "systems/occlusion/occlusion.hpp"
 #include "systems/rainfall/chart.hpp"
 #include "systems/rainfall/extract.hpp"
 #include "systems/rainfall/ladders.hpp"
+#include "systems/rainfall/layered/motion.hpp"
+#include "systems/rainfall/near_drops/near.hpp"
 #include "systems/rainfall/passes.hpp"
+#include "systems/rainfall/snow/extract.hpp"
 #include "systems/scene/propagate.hpp"
 #include "systems/walker/walk.hpp"
 
@@ -40,6 +44,20 @@ std::vector<SystemEntry<SystemContext>> all_systems() {
        .writes = {"rain_motion"},
        .needs = {"emitter"},
        .run = [](SystemContext& c) { simulate_rainfall(c.registry, c.time_s); }},
+
+      {.name = "layered_composite",
+       .phase = Phase::simulate,
+       .reads = {"emitter", "layered_composite", "rain_motion", "camera", "camera_motion", "time"},
+       .writes = {"layered_motion"},
+       .needs = {"emitter"},
+       .after = {"rainfall"},
+       .run = [](SystemContext& c) { simulate_layered(c.registry, c.time_s); }},
+      {.name = "snowfall",
+       .phase = Phase::simulate,
+       .reads = {"snowfall", "wind", "time"},
+       .writes = {"snow_motion"},
+       .needs = {"snowfall"},
+       .run = [](SystemContext& c) { simulate_snowfall(c.registry, c.time_s); }},
 
       {.name = "propagate_transforms",
        .phase = Phase::propagate,
@@ -91,6 +109,27 @@ std::vector<SystemEntry<SystemContext>> all_systems() {
        .needs = {"emitter"},
        .after = {"extract_camera"},
        .run = [](SystemContext& c) { extract_rainfall(c.registry, *c.frame, c.time_s); }},
+      {.name = "extract_layered",
+       .phase = Phase::extract,
+       .reads = {"emitter", "layered_composite", "layered_motion", "frame.camera", "frame.rain"},
+       .writes = {"frame.rain.layered"},
+       .needs = {"emitter"},
+       .after = {"extract_rainfall"},
+       .run = [](SystemContext& c) { extract_layered(c.registry, *c.frame, c.time_s, c.interpolation); }},
+      {.name = "extract_near_drops",
+       .phase = Phase::extract,
+       .reads = {"emitter", "near_drops", "frame.rain"},
+       .writes = {"frame.rain.near_drops"},
+       .needs = {"emitter"},
+       .after = {"extract_rainfall"},
+       .run = [](SystemContext& c) { extract_near_drops(c.registry, *c.frame); }},
+      {.name = "extract_snowfall",
+       .phase = Phase::extract,
+       .reads = {"snowfall", "snow_motion", "frame.camera"},
+       .writes = {"frame.snow"},
+       .needs = {"snowfall"},
+       .after = {"extract_camera"},
+       .run = [](SystemContext& c) { extract_snowfall(c.registry, *c.frame, c.time_s); }},
   };
 }
 
@@ -118,9 +157,20 @@ std::vector<Ladder> all_ladders() {
   return all;
 }
 
+namespace {
+
+Result<void> chart_shelter(const ChartRun& run) {
+  return chart_occlusion(run, [](const Emitter& emitter, const Wind& wind, double time_s) {
+    return make_frame_rain(emitter, start_rain_motion(emitter, wind), {}, 1, 1, time_s);
+  });
+}
+
+}  // namespace
+
 std::vector<ChartOffer> all_charts() {
   return {
       {"rainfall", "all ways to draw falling rain, in three scenes", chart_rainfall},
+      {"occlusion", "maps of shelter against rays, on a street of awnings and in the town", chart_shelter},
   };
 }
 

@@ -82,6 +82,7 @@ void give_techniques(Registry& registry) {
     if (!registry.find<DoubleCone>(entity)) registry.emplace<DoubleCone>(entity);
     if (!registry.find<LayeredComposite>(entity)) registry.emplace<LayeredComposite>(entity);
     if (!registry.find<StreakSprites>(entity)) registry.emplace<StreakSprites>(entity);
+    if (!registry.find<NearDrops>(entity)) registry.emplace<NearDrops>(entity);
     if (!registry.find<Snowfall>(entity)) registry.emplace<Snowfall>(entity);
   }
 }
@@ -141,6 +142,7 @@ Result<std::unique_ptr<World>> World::open(const SubjectOptions& options, GpuSce
 
 Result<void> World::apply_options(const SubjectOptions& options) {
   registry_.view<Emitter>().each([&](Entity, Emitter& emitter) { emitter.seed ^= (options.seed - 1) * 0x9e3779b9u; });
+  registry_.view<Snowfall>().each([&](Entity, Snowfall& snow) { snow.seed ^= (options.seed - 1) * 0x9e3779b9u; });
   for (const std::string& text : options.sets) {
     const auto equals = text.find('=');
     const std::string target = text.substr(0, equals);

@@ -23,6 +23,9 @@ local resources = {
   colour      = { format = "rgba16f" },                            -- the picture as light
   airlight    = { format = "rgba16f", scale = 1 / 4 },             -- lamps glowing in the mist
   rain_light  = { format = "rgba16f", scale = 1 / 16, layers = 12 },  -- lamps on drops that are not known one by one
+  snow_light  = { format = "rgba16f", scale = 1 / 16, layers = 12 },  -- and on flakes
+  near_drops  = { format = "none" },        -- drops that rain_splat leaves to pass near_drops
+  near_environment = { format = "none" },
   bloom       = { format = "rgba16f", scale = 1 / 2, mips = 6 },   -- what the lens scatters
   display     = { format = "rgba16f" },                            -- the picture as seen, before antialiasing
   picture     = { format = "rgba8" },
@@ -52,8 +55,22 @@ local passes = {
 
   -- The drop field: its cells in view, their drops as streaks, and those laid over the picture.
   { pass = "rain_cells" },
-  { pass = "rain_splat", depth = "depth", occlusion_map = "occlusion_map" },
+  { pass = "rain_splat", depth = "depth", occlusion_map = "occlusion_map", near = "near_drops" },
   { pass = "rain_composite", colour = "colour", environment = "environment" },
+
+  { pass = "layered_composite", colour = "colour", depth = "depth", occlusion_map = "occlusion_map",
+    environment = "environment", rain_light = "rain_light" },
+  -- Drops near the eye show the world: captured in six faces (of so many pixels), and those drops.
+  { pass = "near_environment", near_environment = "near_environment", shadow_atlas = "shadow_atlas",
+    parameters = { face = 64 } },
+  { pass = "near_drops", colour = "colour", near = "near_drops", near_environment = "near_environment", depth = "depth",
+    occlusion_map = "occlusion_map" },
+
+  -- Snow, likewise. snow_light is for the cone, which does not know its flakes one by one.
+  { pass = "snow_light", snow_light = "snow_light" },
+  { pass = "snow_cells" },
+  { pass = "snow_field", depth = "depth", occlusion_map = "occlusion_map" },
+  { pass = "snow_composite", colour = "colour", environment = "environment" },
 
   -- An artist's own pass: a compute shader of yours over any resource. Say this makes reds burn (image "picture_in" of
   -- the shader is read and written; parameters are its uniforms; every pixel is one invocation):

@@ -19,7 +19,8 @@ struct AirlightState {
 };
 
 bool scatters(const Frame& frame) {
-  return frame.mist.extinction_per_m > 0.0f || (frame.rain && frame.rain->rain_mm_per_hour > 0.0f);
+  return frame.mist.extinction_per_m > 0.0f || (frame.rain && frame.rain->rain_mm_per_hour > 0.0f) ||
+         (frame.snow && frame.snow->snow_mm_per_hour > 0.0f);
 }
 
 PassOffer airlight() {

@@ -8,7 +8,10 @@ uniform vec3 ambient[4];  // a drop's radiance, cd/m2, as a cubic in the sine of
 
 // Mean radiance of the disc of a drop that is seen along a unit ray, cd/m2.
 vec3 drop_ambient(vec3 ray) {
-#ifdef ENVIRONMENT
+#if defined(ENVIRONMENT) && defined(SNOW)
+  // By the lobes of snow/flake_optics.hpp: the forward one is some 80 degrees wide.
+  return 0.7 * environment_radiance(ray, 0.8) + 0.3 * environment_mean();
+#elif defined(ENVIRONMENT)
   // A drop shows what lies behind it, inverted and gathered from a lobe about 30 degrees wide (median 25), and a
   // fifteenth of all round it.
   return 0.93 * environment_radiance(ray, 0.55) + 0.0664 * environment_mean();

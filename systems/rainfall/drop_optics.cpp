@@ -87,6 +87,10 @@ glm::dvec3 drop_radiance(const glm::dvec3& direction,
 }
 
 std::array<glm::vec3, 4> fit_drop_radiance(const std::function<glm::dvec3(const glm::dvec3&)>& surroundings) {
+  return fit_by_elevation([&](const glm::dvec3& ray) { return drop_radiance(ray, surroundings); });
+}
+
+std::array<glm::vec3, 4> fit_by_elevation(const std::function<glm::dvec3(const glm::dvec3&)>& seen_along) {
   // Legendre polynomials are orthogonal on [-1, 1], so each coefficient is one integral; Gauss-Legendre, 8 points.
   constexpr std::array<double, 4> nodes{0.1834346424956498, 0.5255324099163290, 0.7966664774136267, 0.9602898564975363};
   constexpr std::array<double, 4> weights{0.3626837833783620, 0.3137066458778873, 0.2223810344533745,
@@ -94,7 +98,7 @@ std::array<glm::vec3, 4> fit_drop_radiance(const std::function<glm::dvec3(const 
   std::array<glm::dvec3, 4> c{};
   for (int i = 0; i < 8; ++i) {
     const double x = (i & 1 ? -1.0 : 1.0) * nodes[i / 2];
-    const glm::dvec3 seen = drop_radiance(glm::dvec3(0.0, x, -std::sqrt(1.0 - x * x)), surroundings);
+    const glm::dvec3 seen = seen_along(glm::dvec3(0.0, x, -std::sqrt(1.0 - x * x)));
     const double p[4] = {1.0, x, 0.5 * (3.0 * x * x - 1.0), 0.5 * (5.0 * x * x * x - 3.0 * x)};
     for (int n = 0; n < 4; ++n) c[n] += seen * (weights[i / 2] * p[n] * (2.0 * n + 1.0) / 2.0);
   }

@@ -40,5 +40,7 @@ glm::dvec3 drop_radiance(const glm::dvec3& direction,
 // The same in surroundings that depend on the elevation alone, as a cubic in the sine of the view's elevation
 // (least squares): a drop gathers from so wide a lobe that what it shows changes slowly.
 std::array<glm::vec3, 4> fit_drop_radiance(const std::function<glm::dvec3(const glm::dvec3& direction)>& surroundings);
+// Of anything that is seen along a unit direction and depends on its elevation alone.
+std::array<glm::vec3, 4> fit_by_elevation(const std::function<glm::dvec3(const glm::dvec3& direction)>& seen_along);
 
 }  // namespace petrichor

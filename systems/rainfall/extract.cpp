@@ -18,6 +18,8 @@ double frustum_solid_angle(const FrameCamera& camera, int width, int height) {
   return 4.0 * std::asin(a * b / std::sqrt((1.0 + a * a) * (1.0 + b * b)));
 }
 
+}  // namespace
+
 // Shrinks the distance until drops and candidate cells fit the budget. Under a budget each class reaches as far as it
 // can still be seen: a streak's coverage goes with D^2 / (z V), so large drops are worth drawing farther away than
 // small ones; reach in proportion to D is a little kinder to the small.
@@ -64,6 +66,8 @@ void fit_distance(FrameRain& rain, const FrameCamera& camera, int width, int hei
   rain.fade_start_m = static_cast<float>(fade_share * distance);
   rain.expected_drops = farthest > 0.0 ? static_cast<float>(drops(low) * std::pow(distance / farthest, 3)) : 0.0f;
 }
+
+namespace {
 
 std::vector<double> response_times(const std::vector<DropClass>& classes) {
   std::vector<double> times;

@@ -24,6 +24,10 @@ void simulate_rainfall(Registry&, double time_s);
 // the drawn distance is what the budget of drops allows for this view.
 void extract_rainfall(const Registry&, Frame&, double time_s);
 
+// Sets how far the classes are drawn, by asked_distance_m, maximum_drops and the view: drawn_distance_m, fade_start_m,
+// mean_reach, expected_drops and each class's reach.
+void fit_distance(FrameRain&, const FrameCamera&, int width, int height);
+
 // The same from plain values, for measuring and tests.
 WindMotion start_rain_motion(const Emitter&, const Wind&);
 FrameRain make_frame_rain(const Emitter&, const WindMotion&, const FrameCamera&, int width, int height, double time_s);

@@ -47,7 +47,7 @@ Ladder snow_ladder() {
   l.error_measure = "mean and deviation over time of blocks of pixels; no snow at all: 1";
   l.rungs = {{"fog", "no single flakes: their haze alone", {}},
              {"double_cone", "textures of flakes scrolled on a double cone about the camera", {"snow_cone"}},
-             {"field", "every flake, swaying and tumbling", {"snow_field"}}};
+             {"field", "every flake, swaying and tumbling", {"snow_cells", "snow_field", "snow_composite"}}};
   l.coverage = [](const Frame& frame) { return frame.snow && frame.snow->snow_mm_per_hour > 0.0f ? 1.0 : 0.0; };
   return l;
 }

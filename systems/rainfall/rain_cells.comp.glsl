@@ -16,6 +16,7 @@ uniform uint candidates;
 uniform uint capacity;
 uniform vec3 distances;      // nearest axial distance, start and end of the fade, m
 uniform bool camera_moves;
+uniform float sway_diameters;  // how far flakes stray from their places in the field, in diameters; drops do not
 
 // Whether a box (centre, half extent) reaches into the side planes of a clip matrix.
 bool touches(mat4 clip, vec3 centre, vec3 extent) {
@@ -38,8 +39,9 @@ bool examine(uint index, out RainCellGpu result) {
 
   // The cell's own drops, and where they were when the shutter opened.
   vec3 swept = -layer.velocity_diameter.xyz * frame.camera_velocity_mps.w;
-  vec3 low = corner + min(swept, 0.0), high = corner + edge + max(swept, 0.0);
-  vec3 nearest = max(max(corner, -(corner + edge)), 0.0);
+  float strays = sway_diameters * layer.velocity_diameter.w;
+  vec3 low = corner + min(swept, 0.0) - strays, high = corner + edge + max(swept, 0.0) + strays;
+  vec3 nearest = max(max(corner, -(corner + edge)) - strays, 0.0);
   float reach = layer.expected.z * distances.z;
   if (dot(nearest, nearest) > reach * reach) return false;
   vec3 centre = 0.5 * (low + high), extent = 0.5 * (high - low);

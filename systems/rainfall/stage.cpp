@@ -7,6 +7,7 @@
 #include "systems/rainfall/drop_optics.hpp"
 #include "systems/rainfall/passes.hpp"
 #include "systems/rainfall/rain_shared.h"
+#include "systems/rainfall/snow/flake_optics.hpp"
 
 namespace petrichor {
 namespace {
@@ -28,7 +29,7 @@ PassOffer backdrop_offer(const StageSet& set) {
       clear_texture(context.texture("colour"), {wall.r, wall.g, wall.b, 1.0f});
       return;
     }
-    if (optics->bytes == 0) upload(*optics, std::span<const float>(make_drop_phase()));
+    if (optics->bytes == 0) upload(*optics, std::span<const float>(set.flakes ? make_flake_phase() : make_drop_phase()));
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, RAIN_OPTICS_BINDING, optics->id);
     const Program& program = context.program("backdrop");
     program.use();
@@ -128,8 +129,28 @@ Result<void> RainStage::load() {
     table["resources"]["rain_light"] = {{"format", "rgba16f"}, {"scale", 1.0 / 16.0}, {"layers", 12}};
     table["passes"].push_back({{"pass", "rain_light"}, {"rain_light", "rain_light"}});
     table["passes"].push_back({{"pass", "rain_cells"}, {"parameters", {{"path", set_.path}}}});
+    splat["near"] = "near_drops";
+    table["resources"]["near_drops"] = table["resources"]["near_environment"] = {{"format", "none"}};
     table["passes"].push_back(splat);
     table["passes"].push_back({{"pass", "rain_composite"}, {"colour", "colour"}});
+    Json layered = {{"pass", "layered_composite"}, {"colour", "colour"}, {"rain_light", "rain_light"}};
+    if (set_.wall_hides) layered["depth"] = "depth";
+    if (set_.map) layered["occlusion_map"] = "map";
+    table["passes"].push_back(layered);
+    Json near = splat;
+    near["pass"] = "near_drops";
+    near["colour"] = "colour";
+    near["near_environment"] = "near_environment";
+    table["passes"].push_back({{"pass", "near_environment"}, {"near_environment", "near_environment"}});
+    table["passes"].push_back(near);
+    table["resources"]["snow_light"] = {{"format", "rgba16f"}, {"scale", 1.0 / 16.0}, {"layers", 12}};
+    Json snow = {{"pass", "snow_field"}};
+    for (const char* slot : {"depth", "occlusion_map"})
+      if (splat.contains(slot)) snow[slot] = splat[slot];
+    table["passes"].push_back({{"pass", "snow_light"}, {"snow_light", "snow_light"}});
+    table["passes"].push_back({{"pass", "snow_cells"}});
+    table["passes"].push_back(snow);
+    table["passes"].push_back({{"pass", "snow_composite"}, {"colour", "colour"}});
   }
   table["output"] = "colour";
   if (set_.present) {

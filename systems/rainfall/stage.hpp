@@ -22,6 +22,7 @@ struct StageSet {
   float roof_m = 0.0f;           // a roof this high above the camera over all places with x < 0, relative; 0: no roof
   bool present = true;           // also make the 8-bit picture
   int path = 0;                  // of rain_cells: how drops are drawn
+  bool flakes = false;           // what stands in for undrawn rain is snow: the lamps' light by the flakes' phase
   bool draw_rain = true;         // false: the backdrop alone
 };
 

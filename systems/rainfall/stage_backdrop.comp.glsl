@@ -12,7 +12,7 @@ uniform vec3 around;            // what drops show without lamps, cd/m2
 // Extinction of undrawn rain at a place.
 float undrawn(float x) {
   float sum = frame.rain.z;
-  for (int i = 0; i < 4; ++i) sum += dot(step(frame.rain_onsets[i].yw, vec2(x)), frame.rain_onsets[i].xz);
+  for (uint i = 0u; i < frame.counts.z; ++i) sum += dot(step(frame.rain_onsets[i].yw, vec2(x)), frame.rain_onsets[i].xz);
   return sum;
 }
 
