@@ -67,7 +67,11 @@ std::vector<Schema> make_schemas() {
            field<&LayeredComposite::direction>("direction", "m/s", {-80, 80}, "Added to the rain's own velocity."),
            field<&LayeredComposite::speed>("speed", "", {0, 10}, "Multiplies the rain's velocity; 1 is true."),
            field<&LayeredComposite::strength>("strength", "", {0, 10}, "Multiplies the drops' opacity; 1 is true."),
-           field<&LayeredComposite::milk>("milk", "", {0, 1}, "Bias of the drops towards white; 0 is true.")}),
+           field<&LayeredComposite::milk>("milk", "", {0, 1}, "Bias of the drops towards white; 0 is true."),
+           field<&LayeredComposite::parallax>("parallax", "", {0.1, 10}, "p_r, spread of the published layers' depths."),
+           field<&LayeredComposite::rain_contrast>("rain_contrast", "", {0, 10}, "k_c: how much lightning does to drops."),
+           field<&LayeredComposite::lightning_1>("lightning_1", "", {0, 100}, "L_1: brightness of a flash, for scripts."),
+           field<&LayeredComposite::lightning_2>("lightning_2", "", {0, 100}, "L_2: brightness of another flash.")}),
       schema<StreakSprites>(
           "streak_sprites", "Settings of the technique rainfall=sprites (Tariq 2007); every emitter has them.",
           {field<&StreakSprites::published>("published", "", any, "As printed, with what is known to break."),
@@ -81,6 +85,15 @@ std::vector<Schema> make_schemas() {
                                                        "Multiplies the light of directional lights; 1 is true."),
            field<&StreakSprites::lamp_response>("lamp_response", "", {0, 100},
                                                 "Multiplies the light of point and spot lights; 1 is true.")}),
+      schema<NearDrops>(
+          "near_drops", "Settings of the technique rainfall=near_drops (Rana); every emitter has them.",
+          {field<&NearDrops::published>("published", "", any, "As printed, with what is known to be wrong."),
+           field<&NearDrops::least_width_px>("least_width_px", "px", {0.1, 100},
+                                             "Drops whose image is at least this wide show the world."),
+           field<&NearDrops::most_drops>("most_drops", "", {1, 200000}, "In view, on average; wider ones only if more."),
+           field<&NearDrops::step_m>("step_m", "m", {0.05, 100}, "Way of the camera between captures of the world."),
+           field<&NearDrops::map_cells>("map_cells", "", {2, 64}, "Cells of maps along a side of 10 m."),
+           field<&NearDrops::map_pixels>("map_pixels", "", {4, 64}, "Pixels along a side of a map.")}),
       schema<Snowfall>(
           "snowfall", "Falling snow.",
           {field<&Snowfall::snow_mm_per_hour>("snow_mm_per_hour", "mm/h", {0, 30}, "Water reaching the ground as snow."),

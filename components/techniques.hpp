@@ -24,6 +24,9 @@ struct LayeredComposite {
   float speed = 1.0f;         // multiplies the rain's velocity
   float strength = 1.0f;      // multiplies the drops' opacity; 1 is true
   float milk = 0.0f;          // the paper's bias towards white; 0 is true
+  float parallax = 1.0f;      // p_r of the published setting: spread of the layers' distances
+  float rain_contrast = 1.0f;  // k_c: how much lightning changes the drops
+  float lightning_1 = 0.0f, lightning_2 = 0.0f;  // L_1, L_2: brightness of two flashes now; scripts drive them
 };
 
 // The streak sprites of Tariq 2007, with his controls.
@@ -33,6 +36,16 @@ struct StreakSprites {
   float fraction = 1.0f;  // of the drops that is drawn
   float wind = 1.0f;      // multiplies the wind
   float directional_response = 1.0f, lamp_response = 1.0f;
+};
+
+// Near drops that show the world refracted (Rana), with what his maps are made of.
+struct NearDrops {
+  bool published = false;        // exactly as printed: the world 5 m away on all sides, no drop nearer than 2 m
+  float least_width_px = 1.0f;   // of a drop's image, to be drawn so
+  std::int32_t most_drops = 4096;  // in view, on average; more make the least width larger
+  float step_m = 1.0f;           // the surroundings are captured again when the camera has moved this far
+  std::int32_t map_cells = 20;   // of the technique near_drops=maps: cells along a side of 10 m
+  std::int32_t map_pixels = 16;  // along a side of each map; printed: about 32 (24 KB a map)
 };
 
 // Falling snow, as a field of flakes.

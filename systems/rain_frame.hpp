@@ -7,6 +7,8 @@
 #include <glm/glm.hpp>
 #include <vector>
 
+#include "systems/cone_frame.hpp"
+#include "systems/layered_frame.hpp"
 #include "systems/techniques.hpp"
 
 namespace petrichor {
@@ -31,36 +33,30 @@ struct RainOnset {
 };
 constexpr int rain_onsets = 8;
 
-// The double cone (Wang and Wade 2004), as the frame sees it. Filled by systems/rainfall/cone.
-constexpr int cone_layers = 4;
-struct FrameCone {
-  bool published = false;  // as printed: lengths and scroll by frame time, no hand-over near the apex
-  glm::vec3 axis{0.0f, -1.0f, 0.0f};  // unit, world: the way the precipitation moves past the camera
-  float speed_mps = 0.0f;             // along the axis
-  float apex_fade = 0.0f;             // 1: nothing moves past the camera, so no cone is drawn
-  std::array<float, cone_layers> phase{};       // of each layer's texture along the axis, wrapped to [0, 1)
-  std::array<float, cone_layers> elongation{};  // streak length over that of the texture
-  std::array<float, cone_layers> distance_m{};  // of each layer
-  float far_m = 20.0f;                          // the outermost layer stands for rain out to here
-};
-
-// The layered composite (Tatarchuk and Isidoro 2006, 3.1). Filled by systems/rainfall/layered.
-struct FrameLayered {
-  bool published = false;
-  glm::vec3 velocity_mps{0.0f};  // of the rain past the camera
-  glm::dvec3 travelled_m{0.0};   // the rain's way past the camera, kept small by wrapping where the textures repeat
-  float strength = 1.0f, milk = 0.0f, lightning = 0.0f;
-  float far_m = 20.0f;
-};
-
 // Streak sprites (Tariq 2007). Filled by systems/rainfall/sprites.
 struct FrameSprites {
-  bool published = false;
+  bool published = false, frozen = false;
   bool hidden = false, hide_background = false, simple_shader = false;
   float fraction = 1.0f, directional_response = 1.0f, lamp_response = 1.0f;
-  float box_m = 20.0f;  // edge of the box about the camera that holds the drops
+  float wind = 1.0f;    // multiplies the wind
+  float box_m = 20.0f;  // edge of the box about the camera that holds the drops; drawn is the sphere in it
   std::int32_t count = 0;
-  double time_s = 0.0;  // stands still while frozen
+  std::vector<glm::dvec3> offset_m;  // by class, added to its origin: what freezing and other wind made of it; or empty
+  // Single drops fade out, one by one, from fade_start_m to far_m.
+  float far_m() const { return 0.5f * box_m; }
+  float fade_start_m() const { return 0.9f * far_m(); }
+  float onset_m() const { return 0.5f * (fade_start_m() + far_m()); }
+  float drawn_share() const { return hidden ? 0.0f : fraction; }
+};
+
+// Near drops (Rana). Filled by systems/rainfall/near_drops; NearDrops of components/techniques.hpp says what is what.
+struct FrameNearDrops {
+  bool published = false;
+  float least_width_px = 1.0f;
+  std::int32_t most_drops = 4096;
+  float step_m = 1.0f;
+  std::int32_t map_cells = 20, map_pixels = 16;
+  bool parallax = true;  // the surroundings are where they are, not at infinity
 };
 
 struct FrameRain {
@@ -81,6 +77,7 @@ struct FrameRain {
   FrameCone cone;
   FrameLayered layered;
   FrameSprites sprites;
+  FrameNearDrops near_drops;
   // Share of all drops that each technique draws; every technique thins its drops to it, so that while two give way to
   // one another the mean stays. The rungs of the field share one field.
   float share(RainRung rung) const { return techniques.share(Effect::rainfall, rung); }
@@ -126,7 +123,7 @@ inline void update_onsets(FrameRain& r) {
   if (!(drawn > 0.0f)) r.onsets[0] = {field * r.drawn_extinction_per_m, middle * r.mean_reach};
   r.onsets[field_onsets] = {r.share(RainRung::double_cone) * r.drawn_extinction_per_m, r.cone.far_m};
   r.onsets[field_onsets + 1] = {r.share(RainRung::composite) * r.drawn_extinction_per_m, r.layered.far_m};
-  r.onsets[field_onsets + 2] = {r.share(RainRung::sprites) * r.drawn_extinction_per_m, 0.5f * r.sprites.box_m};
+  r.onsets[field_onsets + 2] = {r.share(RainRung::sprites) * r.drawn_extinction_per_m, r.sprites.onset_m()};
   // Fog alone: from the camera on. It shares an onset of 0 with nothing else, so it is what is missing in the sum.
   float sum = 0.0f;
   for (const RainOnset& o : r.onsets) sum += o.extinction_per_m;

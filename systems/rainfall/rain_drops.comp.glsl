@@ -4,6 +4,7 @@
 layout(local_size_x = 32) in;
 #include "systems/rainfall/streak.glsl"
 #include "systems/rainfall/raster.glsl"
+#include "systems/rainfall/near_drops/near_choice.glsl"
 #include "systems/rainfall/cell_lights.glsl"
 #include "systems/rainfall/streak_lists.glsl"
 
@@ -38,6 +39,7 @@ void main() {
     Streak s;
     vec4 falls = layer.velocity_diameter;
     if (!project(closed, place.w, layer.expected.z, falls.xyz, falls.w, s) || hidden(s, falls.xyz)) continue;
+    if (shows_world(s.middle, s.radius, bits)) continue;  // near_drops draws it
     drawn += 1u;
     drop_bits = bits;
 #ifdef LAMPS

@@ -4,6 +4,7 @@
 layout(local_size_x = 64) in;
 #include "systems/rainfall/streak.glsl"
 #include "systems/rainfall/raster.glsl"
+#include "systems/rainfall/near_drops/near_choice.glsl"
 #include "systems/rainfall/streak_lists.glsl"
 
 layout(std430, binding = RAIN_CELLS_BINDING) readonly buffer RainCells { RainCellGpu cells[]; };
@@ -17,6 +18,7 @@ bool draw_drop(RainCellGpu cell, RainLayerGpu layer, uint m) {
   Streak s;
   vec4 falls = layer.velocity_diameter;
   if (!project(closed, place.w, layer.expected.z, falls.xyz, falls.w, s) || hidden(s, falls.xyz)) return false;
+  if (shows_world(s.middle, s.radius, bits)) return false;  // near_drops draws it
   drop_bits = bits;
 #ifdef LAMPS
   float distance_to_eye = length(s.middle);
