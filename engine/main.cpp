@@ -20,6 +20,7 @@ struct Run {
   Result<void> operator()(const BenchOptions& options) const { return bench(options); }
   Result<void> operator()(const ChartOptions& options) const { return chart(options); }
   Result<void> operator()(const MeasureOptions& options) const { return measure(options); }
+  Result<void> operator()(const BakeOptions& options) const { return bake(options); }
   Result<void> operator()(const InfoOptions& options) const { return info(options); }
 };
 

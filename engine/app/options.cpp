@@ -86,6 +86,7 @@ ParsedCommandLine parse_command_line(int argc, char** argv) {
   BenchOptions bench;
   ChartOptions chart;
   MeasureOptions measure;
+  BakeOptions bake;
   InfoOptions info;
   ParsedCommandLine parsed;
 
@@ -157,6 +158,40 @@ ParsedCommandLine parse_command_line(int argc, char** argv) {
       ->capture_default_str();
   measure_rain->add_option("--seed", measure.seed, "Which of all possible rains")->capture_default_str();
 
+  auto* bake_app = app.add_subcommand("bake", "Compute a table from first principles");
+  bake_app->require_subcommand(1);
+  auto* bake_streaks =
+      bake_app->add_subcommand("streaks", "Light along the streaks of oscillating drops, by tracing them");
+  bake_streaks->add_option("--out", bake.out, "Where to (default: content/streaks.exr beside the program)")
+      ->type_name("FILE.exr");
+  bake_streaks->add_option("--picture", bake.picture, "Also a sheet of streaks to look at")->type_name("FILE.png");
+  bake_streaks->add_flag("--fine", bake.fine, "Many more angles and rays: minutes instead of seconds");
+  const auto nodes = [&](const char* name, int& value, int most, const char* meaning) {
+    bake_streaks->add_option(name, value, meaning)->check(CLI::Range(2, most));
+  };
+  nodes("--views", bake.views, 181, "Elevations of the view, from -90 to 90 degrees");
+  nodes("--lights", bake.lights, 181, "Elevations of the light, from -90 to 90 degrees");
+  nodes("--azimuths", bake.azimuths, 181, "Azimuths of the light from the view, from 0 to 180 degrees");
+  nodes("--along", bake.along, 256, "Places in one cycle of oscillation");
+  nodes("--oscillations", bake.oscillations, 64, "Phases of mode (3,1) against (2,0)");
+  nodes("--across", bake.across, 64, "Places across a streak");
+  bake_streaks->add_option("--rays", bake.rays, "For each view and shape")->check(CLI::Range(100, 10000000));
+  bake_streaks->add_option("--threads", bake.threads, "The same bytes with any number")
+      ->check(CLI::Range(1, 256))
+      ->capture_default_str();
+  bake_streaks->add_option("--diameter", bake.diameter_mm, "Of the drop, mm")
+      ->check(between(0.1, 6.0))
+      ->capture_default_str();
+  bake_streaks->add_option("--prolate", bake.prolate, "Amplitude of mode (2,0), in radii")
+      ->check(between(0.0, 0.25))
+      ->capture_default_str();
+  bake_streaks->add_option("--sideways", bake.sideways, "Amplitude of mode (3,1), in radii")
+      ->check(between(0.0, 0.25))
+      ->capture_default_str();
+  bake_streaks->add_option("--exposure", bake.exposure_s, "Of the streaks on the sheet, s")
+      ->check(between(1e-4, 1.0))
+      ->capture_default_str();
+
   auto* info_app = app.add_subcommand("info", "Describe device, components, systems, passes and techniques");
   info_app->add_flag("--json", info.json, "As JSON");
   info_app->add_option("subject", info.subject, "Whose frame --graph draws (default: the city)")
@@ -181,6 +216,8 @@ ParsedCommandLine parse_command_line(int argc, char** argv) {
     parsed.options = chart;
   else if (*measure_app)
     parsed.options = measure;
+  else if (*bake_app)
+    parsed.options = bake;
   else
     parsed.options = info;
   return parsed;

@@ -59,6 +59,15 @@ struct MeasureOptions {
   std::uint32_t seed = 1;
 };
 
+struct BakeOptions {
+  std::filesystem::path out;      // empty: content/streaks.exr beside the program
+  std::filesystem::path picture;  // also a sheet of streaks to look at
+  bool fine = false;
+  int views = 0, lights = 0, azimuths = 0, along = 0, oscillations = 0, across = 0, rays = 0;  // 0: as small or fine says
+  int threads = 2;
+  double diameter_mm = 2.0, prolate = 0.1, sideways = 0.05, exposure_s = 1.0 / 60.0;
+};
+
 struct InfoOptions {
   bool json = false;
   std::filesystem::path graph;      // write the frame as Graphviz
@@ -66,7 +75,7 @@ struct InfoOptions {
   std::filesystem::path reference;  // write the reference page
 };
 
-using Options = std::variant<PlayOptions, RenderOptions, BenchOptions, ChartOptions, MeasureOptions, InfoOptions>;
+using Options = std::variant<PlayOptions, RenderOptions, BenchOptions, ChartOptions, MeasureOptions, BakeOptions, InfoOptions>;
 
 struct ParsedCommandLine {
   std::optional<Options> options;  // empty: leave with exit_code (help, version, or a wrong call already explained)

@@ -11,6 +11,7 @@ Result<void> render(const RenderOptions&);
 Result<void> bench(const BenchOptions&);
 Result<void> chart(const ChartOptions&);
 Result<void> measure(const MeasureOptions&);
+Result<void> bake(const BakeOptions&);
 Result<void> info(const InfoOptions&);
 
 }  // namespace petrichor

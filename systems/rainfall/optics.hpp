@@ -3,6 +3,7 @@
 // sky.
 
 #include <array>
+#include <memory>
 
 #include "engine/gpu/objects.hpp"
 #include "engine/gpu/shader.hpp"
@@ -10,11 +11,16 @@
 
 namespace petrichor {
 
+struct StreakTable;     // systems/rainfall/streaks/table.hpp
+struct StreakTableGpu;  // systems/rainfall/streaks/gpu.hpp
+
 struct RainOptics {
   Buffer phase;  // floats, RAIN_PHASE_BINS; binding RAIN_OPTICS_BINDING
   FrameSky sky;  // that ambient was made for
   bool known = false;
   std::array<glm::vec3, 4> ambient{};
+  std::shared_ptr<const StreakTableGpu> streaks;     // see bind_streak_table
+  std::shared_ptr<const StreakTable> streaks_of;
 };
 
 // Makes what is missing or stale, and binds the phase function.

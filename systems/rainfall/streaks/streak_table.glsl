@@ -1,0 +1,111 @@
+// The streak table (table.hpp): how bright an oscillating drop is along and across its streak. Include, and call
+// bind_streak_table() of systems/rainfall/streaks/gpu.hpp. Without a table, and where streaks are even, all is 1.
+#ifndef SYSTEMS_RAINFALL_STREAKS_STREAK_TABLE_GLSL
+#define SYSTEMS_RAINFALL_STREAKS_STREAK_TABLE_GLSL
+
+#define STREAK_TABLE_UNIT 13
+#define STREAK_PROFILE_UNIT 12
+// A layer an entry: along the streak by oscillation, both repeat.
+layout(binding = STREAK_TABLE_UNIT) uniform sampler2DArray streak_modulations;
+// A layer an entry: across the streak, and in the last texel the mean over the sphere's phase function.
+layout(binding = STREAK_PROFILE_UNIT) uniform sampler2DArray streak_profiles;
+uniform vec4 streak_table_nodes;    // view, light, azimuth; w: 1 nearest four (Tariq 2007), 2 all angles
+uniform vec2 streak_table_size;     // texels along and oscillations
+uniform float streak_strength;      // 0: even streaks
+
+// Elevations of eye and lamp over the drop's horizon and the turn between their bearings, 0 to pi; unit vectors from
+// the drop.
+vec3 streak_angles(vec3 to_eye, vec3 to_lamp) {
+  float across = length(to_eye.xz) * length(to_lamp.xz);
+  float cosine = across > 1e-6 ? dot(to_eye.xz, to_lamp.xz) / across : 1.0;
+  return vec3(asin(clamp(to_eye.y, -1.0, 1.0)), asin(clamp(to_lamp.y, -1.0, 1.0)), acos(clamp(cosine, -1.0, 1.0)));
+}
+
+struct StreakEntries {
+  ivec3 low, high;
+  vec3 share;  // of the high ones
+  int count;   // that matter: 4 or 8
+};
+
+StreakEntries streak_entries(vec3 angles) {
+  bool four = streak_table_nodes.w == 1.0;
+  if (four) angles = vec3(0.0, abs(angles.y), angles.z);
+  vec3 last = streak_table_nodes.xyz - 1.0;
+  vec3 at = clamp((angles + vec3(1.5707963268, 1.5707963268, 0.0)) * 0.3183098862, 0.0, 1.0) * last;
+  StreakEntries e;
+  e.low = ivec3(min(at, last - 1.0));
+  e.high = e.low + 1;
+  e.share = at - vec3(e.low);
+  if (four) {  // the nearest view of the table to level
+    e.low.x += e.share.x > 0.5 ? 1 : 0;
+    e.share.x = 0.0;
+  }
+  e.count = four ? 4 : 8;
+  return e;
+}
+
+// The entry of a corner, and its weight.
+float streak_entry(StreakEntries e, int corner, out float weight) {
+  bvec3 high = bvec3((corner & 4) != 0, (corner & 2) != 0, (corner & 1) != 0);
+  ivec3 node = ivec3(high.x ? e.high.x : e.low.x, high.y ? e.high.y : e.low.y, high.z ? e.high.z : e.low.z);
+  vec3 w = vec3(high.x ? e.share.x : 1.0 - e.share.x, high.y ? e.share.y : 1.0 - e.share.y,
+                high.z ? e.share.z : 1.0 - e.share.z);
+  weight = w.x * w.y * w.z;
+  return (float(node.x) * streak_table_nodes.y + float(node.y)) * streak_table_nodes.z + float(node.z);
+}
+
+// Brightness at a place along the streak over that of the whole cycle: mean 1 over `along` and `oscillation`, both in
+// cycles.
+float streak_table(vec3 angles, float along, float oscillation) {
+  if (streak_strength == 0.0) return 1.0;
+  StreakEntries e = streak_entries(angles);
+  // Texel k is the value at k, not at k + 0.5.
+  vec2 at = vec2(along, oscillation) + 0.5 / streak_table_size;
+  float sum = 0.0;
+  for (int i = 0; i < e.count; ++i) {
+    float weight;
+    float entry = streak_entry(e, i, weight);
+    if (weight > 0.0) sum += weight * textureLod(streak_modulations, vec3(at, entry), 0.0).r;
+  }
+  return mix(1.0, sum, streak_strength);
+}
+
+// The same across the streak, -1 to 1, positive on the side of the lamp; mean 1 over a disc.
+float streak_across(vec3 angles, float across) {
+  if (streak_strength == 0.0) return 1.0;
+  StreakEntries e = streak_entries(angles);
+  float texels = float(textureSize(streak_profiles, 0).x - 1);
+  float at = clamp(0.5 * (across + 1.0) * texels, 0.5, texels - 0.5) / (texels + 1.0);
+  float sum = 0.0;
+  for (int i = 0; i < e.count; ++i) {
+    float weight;
+    float entry = streak_entry(e, i, weight);
+    if (weight > 0.0) sum += weight * textureLod(streak_profiles, vec3(at, 0.5, entry), 0.0).r;
+  }
+  return mix(1.0, sum, streak_strength);
+}
+
+// The drop's mean over that of a sphere: radiance per irradiance is drop_phase() times this times the above.
+float streak_mean(vec3 angles) {
+  if (streak_strength == 0.0) return 1.0;
+  StreakEntries e = streak_entries(angles);
+  int texel = textureSize(streak_profiles, 0).x - 1;
+  float sum = 0.0;
+  for (int i = 0; i < e.count; ++i) {
+    float weight;
+    float entry = streak_entry(e, i, weight);
+    if (weight > 0.0) sum += weight * texelFetch(streak_profiles, ivec3(texel, 0, int(entry)), 0).r;
+  }
+  return mix(1.0, sum, streak_strength);
+}
+
+// Of a drop: bands per second of its fall, by Rayleigh's frequency of mode (2,0): 344 Hz at 1 mm.
+float streak_bands_hz(float diameter_m) {
+  float mm = diameter_m * 1000.0;
+  return 343.93 * inversesqrt(max(mm * mm * mm, 1e-6));
+}
+
+// Change of `oscillation` for each cycle along: mode (3,1) is 1.936 times as fast as (2,0), not twice.
+const float streak_drift = -0.0635083;
+
+#endif
