@@ -11,6 +11,8 @@
 #include "systems/occlusion/chart.hpp"
 #include "systems/occlusion/occlusion.hpp"
 #include "systems/rainfall/chart.hpp"
+#include "systems/rainfall/class_chart.hpp"
+#include "systems/rainfall/cone/cone.hpp"
 #include "systems/rainfall/extract.hpp"
 #include "systems/rainfall/ladders.hpp"
 #include "systems/rainfall/layered/motion.hpp"
@@ -71,6 +73,13 @@ std::vector<SystemEntry<SystemContext>> all_systems() {
        .needs = {"camera"},
        .after = {"propagate_transforms"},
        .run = [](SystemContext& c) { track_cameras(c.registry); }},
+      {.name = "double_cone",
+       .phase = Phase::propagate,
+       .reads = {"emitter", "snowfall", "double_cone", "rain_motion", "snow_motion", "camera", "camera_motion", "time"},
+       .writes = {"cone_motion"},
+       .needs = {"emitter", "snowfall"},
+       .after = {"track_cameras"},
+       .run = [](SystemContext& c) { simulate_cone(c.registry, c.time_s, c.step_s); }},
 
       {.name = "extract_camera",
        .phase = Phase::extract,
@@ -130,6 +139,13 @@ std::vector<SystemEntry<SystemContext>> all_systems() {
        .needs = {"snowfall"},
        .after = {"extract_camera"},
        .run = [](SystemContext& c) { extract_snowfall(c.registry, *c.frame, c.time_s); }},
+      {.name = "extract_cone",
+       .phase = Phase::extract,
+       .reads = {"double_cone", "cone_motion", "frame.camera", "frame.rain", "frame.snow"},
+       .writes = {"frame.rain.cone", "frame.snow.cone"},
+       .needs = {"emitter", "snowfall"},
+       .after = {"extract_rainfall", "extract_snowfall"},
+       .run = [](SystemContext& c) { extract_cone(c.registry, *c.frame, c.time_s); }},
   };
 }
 
@@ -170,6 +186,7 @@ Result<void> chart_shelter(const ChartRun& run) {
 std::vector<ChartOffer> all_charts() {
   return {
       {"rainfall", "all ways to draw falling rain, in three scenes", chart_rainfall},
+      {"classes", "how many size classes of drops are enough", chart_classes},
       {"occlusion", "maps of shelter against rays, on a street of awnings and in the town", chart_shelter},
   };
 }

@@ -70,6 +70,11 @@ bool precipitates(const Frame& frame) {
 }
 
 glm::vec3 mean_fall(const Frame& frame) {
+  if (frame.wind) {
+    float water = 0.0f, falls = 0.0f;
+    for (const Falling& f : falling(frame)) water += f.water, falls += f.water * f.fall_speed_mps;
+    if (water > 0.0f) return frame.wind->velocity_mps - glm::vec3(0.0f, falls / water, 0.0f);
+  }
   const float rain = frame.rain ? frame.rain->rain_mm_per_hour : 0.0f;
   const float snow = frame.snow ? frame.snow->snow_mm_per_hour : 0.0f;
   glm::vec3 sum(0.0f);
@@ -124,11 +129,12 @@ std::vector<FallShare> chosen_falls(const Frame& frame, int count) {
     for (float sum = 0.5f * samples[first].weight; middle + 1 < end && sum < 0.5f * weight; ++middle)
       sum += 0.5f * (samples[middle].weight + samples[middle + 1].weight);
     const float tilt = samples[middle].tilt.x;
-    // Across: another quantile in every group, by the golden ratio.
+    // Across: another quantile in every group, by the golden ratio and in pairs of neighbours, one to either side.
     std::vector<Sample> group(samples.begin() + static_cast<std::ptrdiff_t>(first),
                               samples.begin() + static_cast<std::ptrdiff_t>(end));
     std::stable_sort(group.begin(), group.end(), [](const Sample& a, const Sample& b) { return a.tilt.y < b.tilt.y; });
-    const double quantile = count == 1 ? 0.5 : std::fmod((i + 0.5) * 0.6180339887, 1.0);
+    const double part_of_pair = std::fmod((i / 2 + 0.5) * 0.6180339887, 1.0);
+    const double quantile = i + 1 == count && count % 2 == 1 ? 0.5 : i % 2 == 0 ? part_of_pair : 1.0 - part_of_pair;
     float sum = 0.0f;
     std::size_t at = 0;
     for (; at + 1 < group.size(); ++at)

@@ -155,6 +155,7 @@ void draw_maps(PassContext& context, MapState& state) {
         }
         map.placement = placement;
         map.drawn = true;
+        ++uniforms.counts.z;
         redraw(context, map);
       }
       // Level ground changes its depth along the fall by tan(tilt) per metre: half a texel's diagonal of that is

@@ -80,7 +80,7 @@ double extinction_per_m(const DropClass& c) {
 
 namespace {
 
-std::vector<DropClass> compute_drop_classes(const Emitter& emitter) {
+std::vector<DropClass> compute_drop_classes(const Emitter& emitter, int drawn) {
   const double top = std::max<double>(emitter.maximum_diameter_mm, 2.0 * smallest_drop_mm);
   const double bottom = std::clamp<double>(emitter.minimum_diameter_mm, smallest_drop_mm, 0.99 * top);
   const auto now = solve_distribution(emitter.drop_sizes, emitter.gamma_shape, top, emitter.rain_mm_per_hour);
@@ -110,23 +110,25 @@ std::vector<DropClass> compute_drop_classes(const Emitter& emitter) {
     }
   };
   split(smallest_drop_mm, bottom, undrawn_classes, false);
-  split(bottom, top, drawn_classes, true);
+  split(bottom, top, drawn, true);
   return classes;
 }
 
 }  // namespace
 
-std::vector<DropClass> make_drop_classes(const Emitter& emitter) {
+std::vector<DropClass> make_drop_classes(const Emitter& emitter, int drawn) {
   // The same answer for the same question; most frames ask what the last one did.
   thread_local Emitter asked;
+  thread_local int asked_drawn = 0;
   thread_local std::vector<DropClass> answer;
-  const bool same = !answer.empty() && asked.rain_mm_per_hour == emitter.rain_mm_per_hour &&
+  const bool same = !answer.empty() && asked_drawn == drawn && asked.rain_mm_per_hour == emitter.rain_mm_per_hour &&
                     asked.drop_sizes == emitter.drop_sizes && asked.gamma_shape == emitter.gamma_shape &&
                     asked.minimum_diameter_mm == emitter.minimum_diameter_mm &&
                     asked.maximum_diameter_mm == emitter.maximum_diameter_mm;
   if (!same) {
-    answer = compute_drop_classes(emitter);
+    answer = compute_drop_classes(emitter, drawn);
     asked = emitter;
+    asked_drawn = drawn;
   }
   return answer;
 }

@@ -46,7 +46,8 @@ constexpr int drawn_classes = 16;   // between minimum_diameter_mm and maximum_d
 constexpr int undrawn_classes = 6;  // below it, down to smallest_drop_mm: they fall, are counted and dim the view
 
 // The small undrawn classes first, then the drawn ones, by rising diameter.
-std::vector<DropClass> make_drop_classes(const Emitter&);
+// `drawn`: how many of those; the chart `classes` says what fewer cost in truth and more in time.
+std::vector<DropClass> make_drop_classes(const Emitter&, int drawn = drawn_classes);
 
 double rain_mm_per_hour(const DropClass&);  // water reaching level ground
 double extinction_per_m(const DropClass&);  // geometric (Q = 1), of the class as it is drawn

@@ -77,18 +77,18 @@ std::vector<double> response_times(const std::vector<DropClass>& classes) {
 
 }  // namespace
 
-WindMotion start_rain_motion(const Emitter& emitter, const Wind& wind) {
-  return start_wind_motion(wind, response_times(make_drop_classes(emitter)));
+WindMotion start_rain_motion(const Emitter& emitter, const Wind& wind, int drawn) {
+  return start_wind_motion(wind, response_times(make_drop_classes(emitter, drawn)));
 }
 
 FrameRain make_frame_rain(const Emitter& emitter, const WindMotion& motion, const FrameCamera& camera, int width,
-                          int height, double time_s) {
+                          int height, double time_s, int drawn) {
   FrameRain rain;
   rain.rain_mm_per_hour = emitter.rain_mm_per_hour;
   rain.seed = emitter.seed;
   rain.asked_distance_m = emitter.drawn_distance_m;
   rain.maximum_drops = emitter.maximum_drops;
-  const auto classes = make_drop_classes(emitter);
+  const auto classes = make_drop_classes(emitter, drawn);
   double extinction = 0.0, drawn_extinction = 0.0, water = 0.0;
   glm::dvec3 momentum(0.0);
   for (std::size_t k = 0; k < classes.size(); ++k) {

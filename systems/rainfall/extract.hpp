@@ -29,7 +29,9 @@ void extract_rainfall(const Registry&, Frame&, double time_s);
 void fit_distance(FrameRain&, const FrameCamera&, int width, int height);
 
 // The same from plain values, for measuring and tests.
-WindMotion start_rain_motion(const Emitter&, const Wind&);
-FrameRain make_frame_rain(const Emitter&, const WindMotion&, const FrameCamera&, int width, int height, double time_s);
+WindMotion start_rain_motion(const Emitter&, const Wind&, int drawn = drawn_classes);
+// `drawn` as the motion was started with.
+FrameRain make_frame_rain(const Emitter&, const WindMotion&, const FrameCamera&, int width, int height, double time_s,
+                          int drawn = drawn_classes);
 
 }  // namespace petrichor
