@@ -8,6 +8,9 @@
 #define SYSTEMS_RAINFALL_RASTER_GLSL
 #include "systems/frame.glsl"
 #include "systems/rainfall/rain_shared.h"
+#ifdef BANDS  // streaks carry bands
+#include "systems/rainfall/streaks/bands.glsl"
+#endif
 
 // Two rows share a word, the even one in its low half: streaks stand rather than lie, so one atomic serves both.
 layout(std430, binding = RAIN_OPTICAL_DEPTH_BINDING) buffer RainOpticalDepth { uint optical_depth[]; };
@@ -37,9 +40,12 @@ float dither() {
   return float(dither_state >> 8u) * 5.9604644775390625e-8;
 }
 
-// -ln(1 - coverage); exact to 1e-3 of itself below 0.3, where series_depth serves.
-float depth_of(float coverage) { return -log(1.0 - min(coverage, 0.98)); }
+// -ln(1 - coverage). The series is exact to 1e-3 of itself below 0.3, and loses nothing of the smallest coverages, of
+// which 1 - coverage is 1.
 vec2 series_depth(vec2 c) { return c * (1.0 + c * (0.5 + c * (0.3333333 + c * (0.25 + c * 0.2)))); }
+float depth_of(float coverage) {
+  return coverage < 0.1 ? series_depth(vec2(coverage)).x : -log(1.0 - min(coverage, 0.98));
+}
 
 // Optical depths of two pixels, one above the other, `pixel` the lower one with an even row; or of `pixel` alone
 // (any row, amounts.y = 0). Rounding up or down by chance keeps the mean, and most of what is far too faint costs
@@ -48,8 +54,9 @@ void add(ivec2 pixel, vec2 amounts, float depth) {
   uvec2 size = uvec2(frame.size.xy);
   if (uint(pixel.x) >= size.x || uint(pixel.y) >= size.y) return;
   dither_state = dither_state * 747796405u + 2891336453u;
-  // The half keeps the mean of amounts far below a unit too.
-  vec2 chance = (vec2(dither_state >> 16u, dither_state & 0xffffu) + 0.5) / 65536.0;
+  // 24 bits: millions of drops in a pixel are some 1e-5 units each, and of 16 bits the smallest would all be lost.
+  uint turned = dither_state << 16u | dither_state >> 16u;
+  vec2 chance = (vec2(dither_state >> 8u, turned >> 8u) + 0.5) * 5.9604644775390625e-8;
   uvec2 units = uvec2(amounts * float(RAIN_DEPTH_ONE) + chance);
   uint word = (units.x | units.y << 16u) << (16u * uint(pixel.y & 1));
 #ifdef LAMPS
@@ -107,6 +114,9 @@ void draw_line(vec2 from, vec2 to, vec2 depths, float area, int taps) {
   // A standing line goes up by pairs of rows, a lying one along by columns.
   float stride = steep ? 2.0 : 1.0;
   float limit = steep ? frame.size.y : frame.size.x;
+#ifdef BANDS
+  vec3 even_light = drop_light;
+#endif
   int first = int(floor(max(low_end.x, 0.0) / stride)), last = int(floor(min(high_end.x, limit - 1.0) / stride));
   for (int i = first + lane; i <= last; i += lanes) {
     seed_dither(i);
@@ -119,6 +129,9 @@ void draw_line(vec2 from, vec2 to, vec2 depths, float area, int taps) {
                        max(vec2(low_end.x), vec2(start, start + 1.0)), vec2(0.0));
     covered.y = steep ? covered.y : 0.0;
     vec2 coverage = per_pixel * covered;
+#ifdef BANDS
+    drop_light = banded(even_light, falling ? 1.0 - middle * per_length : middle * per_length);
+#endif
     if (taps == 1) place += dither();
     float column = floor(place);
     float share = taps == 1 ? 0.0 : place - column;
@@ -154,9 +167,15 @@ void draw_capsule(vec2 from, vec2 to, vec2 depths, float r, float area) {
   float limit = steep ? frame.size.y : frame.size.x, limit_minor = steep ? frame.size.x : frame.size.y;
   int first = int(max(floor(min(start, end) - r), 0.0)), last = int(min(ceil(max(start, end) + r), limit - 1.0));
   float half_width = r / abs(major) + r * abs(minor / major);
+#ifdef BANDS
+  vec3 even_light = drop_light;
+#endif
   for (int i = first + lane; i <= last; i += lanes) {
     seed_dither(i);
     float centre = start_minor + (float(i) + 0.5 - start) * (minor / major);
+#ifdef BANDS
+    drop_light = banded(even_light, clamp((float(i) + 0.5 - start) / (major * len), 0.0, 1.0));
+#endif
     // The caps reach beyond the band's own ends by less than the band is wide.
     int low = int(max(floor(centre - half_width), 0.0)), high = int(min(ceil(centre + half_width), limit_minor - 1.0));
     for (int j = low; j <= high; ++j) {

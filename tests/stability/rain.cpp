@@ -257,18 +257,16 @@ TEST_F(RainStability, RateStepsFrom0To200MillimetresPerHour) {
     Frame frame = frame_of(view, 7.0);
     rain_on(frame, rain_of(rate), 12.0f);
     const std::vector<float> light = light_of(*clear, frame);
-    const double truth = expected_transmittance(frame.rain->extinction_per_m, 12.0, view);
-    EXPECT_NEAR(mean_of(light), truth, 0.15 * (1.0 - truth) + 1e-4) << rate;
     if (!before.empty()) {
-      // A pixel may be brighter than in weaker rain only by the rounding of its sum (a unit each way).
+      // A drop's units are its own whatever else falls, so sums only grow: brighter is only the rounding to half floats.
       int brighter = 0, darkened = 0;
       for (std::size_t p = 0; p < light.size(); p += 4) {
-        if (before[p] > 0.99f) continue;  // a streak stands here
+        if (before[p] > 0.998f) continue;  // a streak stands here
         ++darkened;
-        brighter += light[p] > before[p] + 0.003f;
+        brighter += light[p] > before[p] + 0.0006f;
       }
       ASSERT_GT(darkened, 20) << rate;
-      EXPECT_LT(brighter, darkened / 50 + 1) << rate;
+      EXPECT_EQ(brighter, 0) << rate << ": " << darkened;
     }
     before = light;
   }
