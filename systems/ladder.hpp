@@ -35,6 +35,8 @@ struct Ladder {
   std::function<double(const Frame&)> coverage;
   // False: the director leaves it as it is (it is no question of speed, or a change of it shows).
   bool directed = true;
+  // False: one rung cannot be drawn over another, so a change is seen at once rather than cross-faded.
+  bool fades = true;
 };
 
 // One for each Effect, in its order. systems/systems.cpp

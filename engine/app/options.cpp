@@ -66,6 +66,14 @@ void add_assignments(CLI::App& app, const std::string& name, std::vector<std::st
       ->allow_extra_args(false);
 }
 
+void add_budget(CLI::App& app, double& budget_ms) {
+  app.add_option("--budget", budget_ms,
+                 "Milliseconds that a frame may take: the director chooses the techniques. The picture then depends on "
+                 "the machine")
+      ->type_name("MS")
+      ->check(between(0.01, 100000.0));
+}
+
 void add_subject(CLI::App& app, SubjectOptions& subject, bool required) {
   auto* option =
       app.add_option("subject", subject.subject, "A Lua script, or any .gltf or .glb model to put in the rain")
@@ -107,6 +115,8 @@ ParsedCommandLine parse_command_line(int argc, char** argv) {
   add_size(*play_app, play.width, play.height);
   play_app->add_option("--stop-after", play.stop_after_frames, "Leave after this many frames")
       ->check(CLI::NonNegativeNumber);
+  add_budget(*play_app, play.budget_ms);
+  play_app->add_option("--stats", play.stats, "Write times and counts as JSON on leaving")->type_name("FILE.json");
   play_app->footer(
       "Keys: WASD and mouse walk, Shift runs, Space jumps or rises, F flies, F1 times, F2 inspector,\n"
       "1 drizzle, 2 rain, 3 downpour, 4 dry, Tab frees the mouse, Esc leaves.");
@@ -130,6 +140,7 @@ ParsedCommandLine parse_command_line(int argc, char** argv) {
   render_app->add_option("--out", render.out,
                          "FILE.png or .exr (one frame; with %04d in the name, each frame), or .mp4, .mkv, .webm, .mov");
   render_app->add_option("--stats", render.stats, "Write times and counts as JSON")->type_name("FILE.json");
+  add_budget(*render_app, render.budget_ms);
 
   auto* bench_app = app.add_subcommand("bench", "Measure speed; one JSON row a case");
   bench_app->add_option("names", bench.names, "Which benchmarks (default: all): ecs, rain")->type_name("NAME");

@@ -28,6 +28,8 @@ struct PlayOptions {
   SubjectOptions subject;
   int width = 1280, height = 720;
   std::int64_t stop_after_frames = 0;  // 0: until closed
+  double budget_ms = 0.0;              // of a frame, for the director; 0: it rests
+  std::filesystem::path stats;
 };
 
 struct RenderOptions {
@@ -37,6 +39,7 @@ struct RenderOptions {
   std::optional<FrameRange> frames;
   std::filesystem::path out;
   std::filesystem::path stats;
+  double budget_ms = 0.0;  // of a frame, for the director; 0: it rests
 };
 
 struct BenchOptions {

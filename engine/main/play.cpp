@@ -6,13 +6,16 @@
 #include <array>
 #include <chrono>
 #include <deque>
+#include <nlohmann/json.hpp>
 
 #include "components/components.hpp"
 #include "engine/core/log.hpp"
 #include "engine/core/paths.hpp"
 #include "engine/main/commands.hpp"
+#include "engine/main/direction.hpp"
 #include "engine/main/reload.hpp"
 #include "engine/main/renderer.hpp"
+#include "engine/main/stats.hpp"
 #include "engine/main/world.hpp"
 #include "systems/interface/interface.hpp"
 #include "systems/rainfall/passes.hpp"
@@ -90,6 +93,10 @@ struct Reloader {
   }
 };
 
+double milliseconds_since(Clock::time_point start) {
+  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+}
+
 void show(const Texture& picture, const Context& context) {
   int width = 0, height = 0;
   context.framebuffer_size(width, height);
@@ -115,8 +122,16 @@ Result<void> play(const PlayOptions& options) {
   world->set_affordable_drops(affordable_drops(renderer.device));
   if (auto loaded = load_render_script(renderer, world->render_script()); !loaded) return loaded;
 
+  auto opened_direction = Direction::open(world->techniques());
+  if (!opened_direction) return tl::unexpected(opened_direction.error());
+  Direction direction = std::move(*opened_direction);
+  bool warm = false;  // every rung that may be chosen has been drawn once
+
   Interface interface(renderer.context->native_window());
   InterfaceState state;
+  state.directed = options.budget_ms > 0.0;
+  if (state.directed) state.budget_ms = static_cast<float>(options.budget_ms);
+  RunStats stats;
   OverlayInfo overlay;
   overlay.device = renderer.device.renderer;
   Reloader reloader;
@@ -144,6 +159,7 @@ Result<void> play(const PlayOptions& options) {
     const double spent_s = std::chrono::duration<double>(now - last).count();
     last = now;
     time_s += std::min(spent_s, longest_frame_s);
+    const auto work_start = Clock::now();
     emit_keys(input, world->script());
     if (auto advanced = world->advance_to(time_s, player_input(input, !interface.wants_keyboard())); !advanced) {
       state.errors = {advanced.error().message};
@@ -152,25 +168,60 @@ Result<void> play(const PlayOptions& options) {
     reloader.check(call, world, renderer, time_s, state);
 
     int width = 0, height = 0;
+    bool just_warmed = false;
     renderer.context->framebuffer_size(width, height);
     if (width > 0 && height > 0) {
-      world->extract(frame, static_cast<std::uint64_t>(number), time_s, width, height);
+      direction.budget_ms = state.directed ? state.budget_ms : 0.0;
+      if (state.directed && !std::exchange(warm, true)) {
+        if (auto warmed = direction.warm_up(renderer, *world, width, height); !warmed)
+          state.errors = {warmed.error().message};
+        just_warmed = true;
+        last = Clock::now();  // that is no frame
+      }
+      direction.choose(*world, std::min(spent_s, longest_frame_s));
+      const Size size = drawn_size(world->techniques(), width, height);
+      world->extract(frame, static_cast<std::uint64_t>(number), time_s, size.width, size.height);
       // On software OpenGL, looking at the times costs a few glFinishes; only then are they paid.
-      const auto picture = draw(renderer, frame, state.show_times && number % 8 == 0);
+      const bool profile = state.directed ? direction.profile() : state.show_times && number % 8 == 0;
+      const auto picture = draw(renderer, frame, profile);
       if (picture)
         show(**picture, *renderer.context);
       else if (state.errors.empty())
         state.errors = {picture.error().message};
     }
+    auto timings = renderer.timer->collect();
+    // The frame's own work. On a GPU that runs beside us: the longer of what each of us took.
+    double work_ms = 0.0;
+    if (renderer.device.software) {
+      if (state.directed) glFinish();
+      work_ms = milliseconds_since(work_start);
+    } else {
+      for (const Timing& pass : timings) work_ms += pass.milliseconds;
+      work_ms = timings.empty() ? 0.0 : std::max(work_ms, milliseconds_since(work_start));
+    }
+    if (state.directed && work_ms > 0.0) direction.measured(frame, just_warmed ? 0.0 : work_ms, timings);
+    if (!options.stats.empty() && number > 0) {
+      stats.frame_ms.push_back(state.directed ? work_ms : spent_s * 1000.0);
+      stats.add(timings);
+    }
     frame_ms.push_back(static_cast<float>(spent_s * 1000.0));
     if (frame_ms.size() > 240) frame_ms.pop_front();
-    if (auto timings = renderer.timer->collect(); !timings.empty()) overlay.pass_ms = std::move(timings);
+    if (!timings.empty()) overlay.pass_ms = std::move(timings);
+    if (state.show_times) overlay.director = direction.notes();
     overlay.frame_ms.assign(frame_ms.begin(), frame_ms.end());
     overlay.rain_mm_per_hour = frame.rain ? frame.rain->rain_mm_per_hour : 0.0f;
     if (state.show_times) overlay.drops_drawn = rain_stats(frame).drops_drawn;
     interface.draw(state, overlay, world->registry(), component_schemas());
     renderer.context->present();
     ++number;
+  }
+  if (!options.stats.empty()) {
+    auto json = to_json(stats, renderer.device, options.width, options.height, number, rain_stats(frame).drops_drawn,
+                        renderer.timer->gpu_times_are_real());
+    json["budget_ms"] = state.directed ? state.budget_ms : 0.0f;
+    json["director"] = direction.report();
+    json["director_changes"] = direction.changes();
+    return write_whole_file(options.stats, json.dump(2) + "\n");
   }
   return {};
 }

@@ -9,6 +9,7 @@
 #include "engine/core/log.hpp"
 #include "engine/core/paths.hpp"
 #include "engine/main/commands.hpp"
+#include "engine/main/direction.hpp"
 #include "engine/main/renderer.hpp"
 #include "engine/main/stats.hpp"
 #include "engine/main/world.hpp"
@@ -74,6 +75,11 @@ Result<void> render(const RenderOptions& options) {
   auto recorder = make_recorder(job->target, job->width, job->height, job->fps);
   if (!recorder) return tl::unexpected(recorder.error());
 
+  auto direction = Direction::open(world.techniques());
+  if (!direction) return tl::unexpected(direction.error());
+  direction->budget_ms = options.budget_ms;
+  const bool directed = options.budget_ms > 0.0;
+
   const bool want_stats = !options.stats.empty();
   const bool linear = job->target.kind == RecordKind::exr;
   RunStats stats;
@@ -88,30 +94,44 @@ Result<void> render(const RenderOptions& options) {
       return failure(fmt::format("interrupted before frame {}{}", number,
                                  job->target.kind == RecordKind::film ? "; the unfinished film is removed" : ""));
     const double time_s = static_cast<double>(number) / job->fps;
+    const bool first = number == job->frames.begin;
+    if (directed && first) {
+      if (auto advanced = world.advance_to(time_s); !advanced) return advanced;
+      if (auto warm = direction->warm_up(renderer, world, job->width, job->height); !warm) return warm;
+    }
+    if (directed) glFinish();  // the picture before is read
+    const auto work_start = Clock::now();
     if (auto advanced = world.advance_to(time_s); !advanced) return advanced;
-    world.extract(frame, static_cast<std::uint64_t>(number), time_s, job->width, job->height);
+    if (directed) direction->choose(world, first ? 0.0 : 1.0 / job->fps);
+    const Size size = drawn_size(world.techniques(), job->width, job->height);
+    world.extract(frame, static_cast<std::uint64_t>(number), time_s, size.width, size.height);
 
     // Writing pictures takes longer than drawing them, and a GPU that waits lowers its clock: before a frame is timed
     // it is drawn again and again for a while.
-    if (want_stats && !renderer.device.software)
+    if (want_stats && !directed && !renderer.device.software)
       for (const auto begun = Clock::now(); milliseconds_since(begun) < warm_up_ms; glFinish())
         if (auto drawn = draw(renderer, frame, false); !drawn) return tl::unexpected(drawn.error());
-    if (want_stats) glFinish();
-    const auto start = Clock::now();
-    const auto picture = draw(renderer, frame, false);
-    if (!picture) return tl::unexpected(picture.error());
-    if (want_stats) {
+    if (want_stats && !directed) glFinish();
+    // With a budget the whole work of a frame counts, simulation too.
+    const auto start = directed ? work_start : Clock::now();
+    const auto drawn = draw(renderer, frame, directed && direction->profile());
+    if (!drawn) return tl::unexpected(drawn.error());
+    const Texture* picture = &enlarged(renderer, **drawn, job->width, job->height);
+    if (want_stats || directed) {
       glFinish();
+      const double frame_ms = milliseconds_since(start);
       const std::int64_t done = number - job->frames.begin;
       if (done == 0) stats.start_to_first_frame_s = milliseconds_since(program_start) / 1000.0;
       // The first frame compiles shaders and fills caches: it counts only where it is the only one.
       const bool counts = done > 0 || job->frames.end - job->frames.begin == 1;
-      if (counts) stats.frame_ms.push_back(milliseconds_since(start));
+      if (counts) stats.frame_ms.push_back(frame_ms);
       // On software OpenGL passes are timed on a second drawing of the same frame, so that the glFinishes between
       // them do not cost the first; every eighth frame will do.
-      if (renderer.device.software && counts && done % 8 <= 1)
+      if (!directed && renderer.device.software && counts && done % 8 <= 1)
         if (auto again = draw(renderer, frame, true); !again) return tl::unexpected(again.error());
-      if (auto timings = renderer.timer->collect(); counts) stats.add(timings);
+      const std::vector<Timing> timings = renderer.timer->collect();
+      if (counts) stats.add(timings);
+      if (directed) direction->measured(frame, frame_ms, timings);
       drops_drawn = rain_stats(frame).drops_drawn;
     }
     Picture recorded{job->width, job->height, {}, {}};
@@ -119,11 +139,11 @@ Result<void> render(const RenderOptions& options) {
       const Texture* light = renderer.graph->linear_output();
       if (!light)
         return failure(fmt::format("{}: has no linear_output, which .exr needs", world.render_script().string()));
-      read_picture(*light, floats);
+      read_picture(enlarged(renderer, *light, job->width, job->height), floats);
       for (float& value : floats) value *= frame.uniforms.lens.w;  // exposed: 1 is the picture's white
       recorded.rgba32f = floats;
     } else {
-      read_picture(**picture, bytes);
+      read_picture(*picture, bytes);
       recorded.rgba8 = bytes;
     }
     if (auto added = (*recorder)->add(number, recorded); !added) return added;
@@ -137,6 +157,11 @@ Result<void> render(const RenderOptions& options) {
     for (const Ladder& ladder : all_ladders())
       if (ladder.coverage(frame) > 0.0)
         json["techniques"][ladder.name] = ladder.rungs[frame.techniques[ladder.effect].rung].name;
+    if (directed) {
+      json["budget_ms"] = options.budget_ms;
+      json["director"] = direction->report();
+      json["director_changes"] = direction->changes();
+    }
     if (auto written = write_whole_file(options.stats, json.dump(2) + "\n"); !written) return written;
   }
   log_info("{} ({}x{}, {} frames)", job->target.file.string(), job->width, job->height,

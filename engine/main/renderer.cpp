@@ -1,5 +1,8 @@
 #include "engine/main/renderer.hpp"
 
+#include <algorithm>
+#include <array>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "engine/core/paths.hpp"
@@ -43,6 +46,26 @@ Result<const Texture*> draw(Renderer& renderer, Frame& frame, bool profile) {
   auto picture = renderer.graph->execute(frame, frame.width, frame.height, *renderer.timer);
   renderer.timer->end_frame();
   return picture;
+}
+
+Size drawn_size(const Techniques& techniques, int width, int height) {
+  constexpr std::array<double, 3> side{0.5, 2.0 / 3.0, 1.0};
+  static_assert(side.size() == static_cast<std::size_t>(ResolutionRung::count));
+  const double share = side[std::min<std::size_t>(techniques[Effect::resolution].rung, side.size() - 1)];
+  const auto scaled = [&](int pixels) { return std::max(static_cast<int>(std::lround(pixels * share)), 1); };
+  return {scaled(width), scaled(height)};
+}
+
+const Texture& enlarged(Renderer& renderer, const Texture& texture, int width, int height) {
+  if (texture.width == width && texture.height == height) return texture;
+  Texture& large = renderer.enlarged;
+  if (!large.id || large.width != width || large.height != height || large.format != texture.format)
+    large = make_texture_2d(width, height, texture.format);
+  const Framebuffer from = make_framebuffer(std::array{static_cast<GLuint>(texture.id)}, 0);
+  const Framebuffer to = make_framebuffer(std::array{static_cast<GLuint>(large.id)}, 0);
+  glBlitNamedFramebuffer(from, to, 0, 0, texture.width, texture.height, 0, 0, width, height, GL_COLOR_BUFFER_BIT,
+                         GL_LINEAR);
+  return large;
 }
 
 std::int32_t affordable_drops(const DeviceInfo& device) {

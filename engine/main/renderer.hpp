@@ -22,6 +22,7 @@ struct Renderer {
   std::unique_ptr<FrameGpu> frame_gpu;
   std::unique_ptr<Graph> graph;
   std::unique_ptr<FrameTimer> timer;
+  Texture enlarged;  // of enlarged()
   std::filesystem::path render_script;              // of the table the graph holds
   std::vector<std::filesystem::path> script_files;  // it was read from these
 };
@@ -33,6 +34,14 @@ Result<void> load_render_script(Renderer&, const std::filesystem::path& script);
 
 // Draws the frame; the texture is the finished picture (sRGB-encoded RGBA8), valid until the next call.
 Result<const Texture*> draw(Renderer&, Frame&, bool profile);
+
+// Pixels that are drawn for a picture of that size: fewer where `resolution` says so.
+struct Size {
+  int width, height;
+};
+Size drawn_size(const Techniques&, int width, int height);
+// A texture at least as large as asked: the given one, or it enlarged (linearly). Valid until the next call.
+const Texture& enlarged(Renderer&, const Texture&, int width, int height);
 
 // How many drops the device draws in a share of a frame that leaves room for the city: measured figures are in
 // docs/performance.md.

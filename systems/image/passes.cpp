@@ -114,7 +114,8 @@ Ladder antialias_ladder() {
   l.error_measure = "root mean square, without antialiasing: 1";
   l.rungs = {{"off", "edges as they fall on pixels", {"antialias"}, 0.0, 1.0},
              {"edges", "edges found in the finished picture are smoothed", {"antialias"}, 2.0, 0.5}};
-  l.coverage = [](const Frame&) { return 0.02; };
+  l.coverage = [](const Frame&) { return 0.02; };  // pixels on edges
+  l.fades = false;
   return l;
 }
 
@@ -129,6 +130,7 @@ Ladder resolution_ladder() {
              {"two_thirds", "two thirds of the width and height", {}, 0.0, 0.3},
              {"full", "every pixel", {}, 0.0, 0.0}};
   l.coverage = [](const Frame&) { return 1.0; };
+  l.fades = false;
   return l;
 }
 

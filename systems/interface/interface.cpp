@@ -30,6 +30,23 @@ void draw_times(const OverlayInfo& info) {
   ImGui::End();
 }
 
+// Beneath the times: the budget, and by what each effect is drawn.
+void draw_director(InterfaceState& state, const OverlayInfo& info) {
+  if (ImGui::Begin("Times")) {
+    ImGui::Separator();
+    ImGui::Checkbox("the director keeps frames within", &state.directed);
+    ImGui::SameLine();
+    ImGui::SetNextItemWidth(80.0f);
+    ImGui::DragFloat("ms", &state.budget_ms, 0.25f, 1.0f, 1000.0f, "%.1f", ImGuiSliderFlags_AlwaysClamp);
+    for (const DirectorNote& note : info.director) {
+      ImGui::Text("%8.2f ms  %s=%s, error %.2f of %.0f%%", note.ms, note.effect.c_str(), note.rung.c_str(), note.error,
+                  note.coverage * 100.0);
+      ImGui::TextDisabled("             %s", note.why.c_str());
+    }
+  }
+  ImGui::End();
+}
+
 void draw_errors(std::vector<std::string>& errors) {
   if (errors.empty()) return;
   ImGui::SetNextWindowPos(ImVec2(10, 300), ImGuiCond_FirstUseEver);
@@ -80,7 +97,10 @@ void Interface::draw(InterfaceState& state, const OverlayInfo& info, Registry& r
 }
 
 void draw_windows(InterfaceState& state, const OverlayInfo& info, Registry& registry, std::span<const Schema> schemas) {
-  if (state.show_times) draw_times(info);
+  if (state.show_times) {
+    draw_times(info);
+    if (!info.director.empty()) draw_director(state, info);
+  }
   if (state.show_inspector) {
     ImGui::SetNextWindowPos(ImVec2(ImGui::GetIO().DisplaySize.x - 410, 10), ImGuiCond_FirstUseEver);
     ImGui::SetNextWindowSize(ImVec2(400, 600), ImGuiCond_FirstUseEver);

@@ -9,6 +9,7 @@
 #include "engine/ecs/registry.hpp"
 #include "engine/ecs/schema.hpp"
 #include "engine/gpu/timer.hpp"
+#include "systems/director_note.hpp"
 #include "systems/interface/inspector.hpp"
 
 namespace petrichor {
@@ -19,11 +20,14 @@ struct OverlayInfo {
   std::vector<Timing> pass_ms;  // of the newest frame that is known
   std::uint64_t drops_drawn = 0;
   float rain_mm_per_hour = 0.0f;
+  std::vector<DirectorNote> director;  // what it chose and why; empty: it is not there
 };
 
 struct InterfaceState {
   bool show_times = false;      // F1
   bool show_inspector = false;  // F2
+  bool directed = false;        // the director keeps frames within budget_ms
+  float budget_ms = 16.0f;
   InspectorState inspector;
   std::vector<std::string> errors;  // of the last reload; empty: none
 };

@@ -1,0 +1,114 @@
+#include "engine/main/direction.hpp"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "components/components.hpp"
+#include "engine/core/log.hpp"
+#include "engine/core/paths.hpp"
+#include "systems/director/figures.hpp"
+
+namespace petrichor {
+namespace {
+
+constexpr float warm_up_mm_per_hour = 5.0f;
+
+bool may_be_chosen(const Ladder& ladder, const Rung& rung) {
+  return ladder.directed && usable(rung);
+}
+
+}  // namespace
+
+Result<Direction> Direction::open(const Techniques& asked) {
+  std::vector<Ladder> ladders = all_ladders();
+  if (const auto file = find_data("content/ladders.csv")) {
+    if (auto loaded = load_ladder_figures(*file, ladders); !loaded) return tl::unexpected(loaded.error());
+  } else {
+    log_warn("content/ladders.csv is not there, so the director begins with the ladders' own figures: {}",
+             file.error().message);
+  }
+  Direction direction;
+  direction.director_ = make_director(std::move(ladders), asked);
+  direction.asked_ = asked;
+  direction.input_.asked = asked;
+  direction.output_.techniques = asked;
+  return direction;
+}
+
+Result<void> Direction::warm_up(Renderer& renderer, World& world, int width, int height) {
+  // Where it is dry it rains for these frames, else the passes of rain would be left out.
+  std::vector<std::pair<Entity, float>> rates;
+  world.registry().view<Emitter>().each([&](Entity entity, Emitter& emitter) {
+    rates.emplace_back(entity, emitter.rain_mm_per_hour);
+    emitter.rain_mm_per_hour = std::max(emitter.rain_mm_per_hour, warm_up_mm_per_hour);
+  });
+  const Techniques before = world.techniques();
+  Result<void> outcome;
+  for (const Ladder& ladder : director_.costs.ladders)
+    for (std::size_t r = 0; r < ladder.rungs.size() && outcome; ++r) {
+      if (world.chosen_by_user(ladder.effect) || !may_be_chosen(ladder, ladder.rungs[r])) continue;
+      // The whole scene at every size; the rungs of effects on a small picture: what they do is the same.
+      world.techniques() = before;
+      if (ladder.effect != Effect::resolution) world.techniques().set(Effect::resolution, ResolutionRung::half);
+      world.techniques().set(ladder.effect, static_cast<std::uint8_t>(r));
+      const Size size = drawn_size(world.techniques(), width, height);
+      Frame frame;
+      world.extract(frame, 0, 0.0, size.width, size.height);
+      if (auto drawn = draw(renderer, frame, false); !drawn) outcome = tl::unexpected(drawn.error());
+      glFinish();
+    }
+  world.techniques() = before;
+  for (const auto& [entity, rate] : rates) world.registry().get<Emitter>(entity).rain_mm_per_hour = rate;
+  return outcome;
+}
+
+void Direction::choose(World& world, double step_s) {
+  input_.budget_ms = budget_ms;
+  input_.step_s = step_s;
+  for (std::size_t e = 0; e < effect_count; ++e) input_.pinned[e] = world.chosen_by_user(static_cast<Effect>(e));
+  output_ = direct(director_, input_);
+  world.techniques() = output_.techniques;
+  input_.frame_ms = 0.0;  // known once
+  input_.passes = {};
+}
+
+void Direction::measured(const Frame& frame, double frame_ms, std::span<const Timing> passes) {
+  for (const Ladder& ladder : director_.costs.ladders)
+    input_.coverage[static_cast<std::size_t>(ladder.effect)] = std::clamp(ladder.coverage(frame), 0.0, 1.0);
+  passes_.clear();
+  for (const Timing& pass : passes) passes_.push_back({pass.name, pass.milliseconds});
+  input_.frame_ms = frame_ms;
+  input_.profiled = output_.profile_next;
+  input_.passes = passes_;
+}
+
+nlohmann::json Direction::report() const {
+  nlohmann::json all = nlohmann::json::array();
+  for (const DirectorNote& note : notes())
+    all.push_back({{"effect", note.effect},
+                   {"rung", note.rung},
+                   {"ms", note.ms},
+                   {"error", note.error},
+                   {"coverage", note.coverage},
+                   {"switches", note.switches},
+                   {"why", note.why}});
+  return all;
+}
+
+nlohmann::json Direction::changes() const {
+  nlohmann::json all = nlohmann::json::array();
+  for (const DirectorSwitch& change : director_.history) {
+    const Ladder& ladder = director_.costs.ladders[static_cast<std::size_t>(change.effect)];
+    all.push_back({{"frame", change.frame},
+                   {"time_s", change.time_s},
+                   {"effect", ladder.name},
+                   {"from", ladder.rungs[static_cast<std::size_t>(change.from)].name},
+                   {"to", ladder.rungs[static_cast<std::size_t>(change.to)].name},
+                   {"frame_ms", change.level_ms},
+                   {"expected_ms", change.expected_ms},
+                   {"reason", change.reason}});
+  }
+  return all;
+}
+
+}  // namespace petrichor

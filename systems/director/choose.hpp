@@ -1,0 +1,35 @@
+#pragma once
+// The search: which rungs together leave the least visible error within a limit. There are few combinations (126 of the
+// ladders that are directed), so all are looked at.
+
+#include <array>
+#include <vector>
+
+#include "systems/director/costs.hpp"
+
+namespace petrichor {
+
+using Rungs = std::array<int, effect_count>;
+
+struct Question {
+  const std::vector<Ladder>* ladders = nullptr;
+  const CostTable* table = nullptr;
+  std::array<double, effect_count> coverage{};
+  Rungs now{};
+  std::array<std::vector<char>, effect_count> allowed;  // by rung; `now` always is
+  double spread = 1.0;                                  // p95 over median
+  double limit_ms = 0.0;                                // of the p95
+};
+
+struct Answer {
+  Rungs rungs{};
+  double ms = 0.0;     // the median frame that is expected
+  double error = 0.0;  // visible: error x coverage, summed
+  bool fits = false;   // false: nothing does, and this is the cheapest
+};
+
+double expected_ms(const Question&, const Rungs&);
+double visible_error(const Question&, const Rungs&);
+Answer choose(const Question&);
+
+}  // namespace petrichor

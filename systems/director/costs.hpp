@@ -1,0 +1,62 @@
+#pragma once
+// What the director knows of costs: the chart's figures, rescaled by what this machine measures.
+
+#include <array>
+#include <cstddef>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "systems/ladder.hpp"
+#include "systems/techniques.hpp"
+
+namespace petrichor {
+
+struct PassTime {
+  std::string name;
+  double ms = 0.0;
+};
+
+// The last few figures; their median stands for them.
+struct CostSamples {
+  std::array<double, 7> ms{};
+  int count = 0, next = 0;
+};
+
+constexpr std::size_t resolution_rungs = static_cast<std::size_t>(ResolutionRung::count);
+
+struct DirectorCosts {
+  std::vector<Ladder> ladders;  // one for each Effect, in its order
+  // [effect][rung][rung of resolution]: milliseconds
+  std::array<std::vector<std::array<CostSamples, resolution_rungs>>, effect_count> measured;
+  // What a frame costs at each resolution, apart from the effects, as a share of full size.
+  std::array<double, resolution_rungs> scale{};
+  int trust = 2;   // in the timer: at most 3, from 2 on it is believed
+  int caught = 0;  // how often what it said did not come true
+};
+
+// A rung that the director may choose: stable, and with figures.
+bool usable(const Rung&);
+
+DirectorCosts make_costs(std::vector<Ladder> ladders);
+
+// A table of the present estimates, of effects that are in the picture; 0 for the others.
+struct CostTable {
+  std::array<std::vector<std::array<double, resolution_rungs>>, effect_count> ms;
+};
+// level_ms: of the whole frame as it is drawn now, by `techniques` (0: not known).
+CostTable cost_table(const DirectorCosts&, const Techniques&, const std::array<double, effect_count>& coverage,
+                     double level_ms);
+
+// Takes the times of passes of a frame drawn by `techniques` (no cross-fade) in frame_ms. A timer that reports nonsense
+// (not finite, negative, a sum that has nothing to do with the frame) loses trust and is not believed.
+void learn_passes(DirectorCosts&, const Techniques&, const std::array<double, effect_count>& coverage,
+                  std::span<const PassTime>, double frame_ms);
+// A change of rungs was expected to turn frames of before_ms into expected_ms, and they became after_ms.
+void learn_change(DirectorCosts&, const std::array<int, effect_count>& from, const std::array<int, effect_count>& to,
+                  const std::array<double, effect_count>& coverage, double before_ms, double expected_ms,
+                  double after_ms);
+
+double median_of(std::vector<double> values);  // 0 for none
+
+}  // namespace petrichor
