@@ -37,7 +37,8 @@ std::string table(const Chart& chart) {
   return text;
 }
 
-std::string picture(const std::filesystem::path& folder, const Chart& chart) {
+// A gnuplot script; it draws beside itself.
+std::string picture(const Chart& chart) {
   const std::vector<bool> hull = on_hull(chart.points);
   const auto shown = [](const ChartPoint& p) { return std::max(p.error, least_error); };
   const auto marks = [&](bool stable) {
@@ -63,14 +64,12 @@ std::string picture(const std::filesystem::path& folder, const Chart& chart) {
   std::string text;
   for (const auto& [terminal, extension] : {std::pair{"svg size 1000,680 background '#ffffff' font 'sans,12'", "svg"},
                                             std::pair{"pngcairo size 1000,680 font 'sans,11'", "png"}}) {
-    text += fmt::format("reset\nset terminal {}\nset output {}\n", terminal,
-                        quoted((folder / (chart.name + "." + extension)).string()));
+    text += fmt::format("reset\nset terminal {}\nset output {}\n", terminal, quoted(chart.name + "." + extension));
     text += fmt::format("set title {} noenhanced\n", quoted(chart.title + " (" + chart.device + ")"));
     text += fmt::format("set xlabel {} noenhanced\nset ylabel {} noenhanced\n", quoted(chart.x_label),
                         quoted(chart.error_label));
     text += "set logscale xy\nset grid lc rgb '#dddddd'\nset key bottom left\n";
-    text += fmt::format("set xrange [{}:{}]\n", std::max(low, 1e-4) * 0.6,
-                        std::max(high, 1e-4) * 3.0);
+    text += fmt::format("set xrange [{}:{}]\n", std::max(low, 1e-4) * 0.6, std::max(high, 1e-4) * 3.0);
     if (chart.floor > 0.0) text += fmt::format("floor = {}\n", chart.floor);
     text +=
         "plot '-' using 1:2 with lines lc rgb '#999999' lw 1.5 title 'not dominated', "
@@ -97,13 +96,15 @@ std::vector<bool> on_hull(const std::vector<ChartPoint>& points) {
 Result<void> write_chart(const std::filesystem::path& folder, const Chart& chart) {
   const std::filesystem::path csv = folder / (chart.name + ".csv");
   if (auto written = write_whole_file(csv, table(chart)); !written) return written;
+  const std::filesystem::path script = folder / (chart.name + ".gnuplot");
+  if (auto written = write_whole_file(script, picture(chart)); !written) return written;
   if (std::system("command -v gnuplot >/dev/null 2>&1") != 0) {
-    log_warn("gnuplot is not installed: {} holds the figures, no picture was drawn", csv.string());
+    log_warn("gnuplot is not installed: {} holds the figures; gnuplot {} draws them, in its folder, where there is one",
+             csv.string(), script.filename().string());
     return {};
   }
-  const std::filesystem::path script = folder / (chart.name + ".gnuplot");
-  if (auto written = write_whole_file(script, picture(folder, chart)); !written) return written;
-  const int failed = std::system(fmt::format("gnuplot '{}'", script.string()).c_str());
+  const int failed =
+      std::system(fmt::format("cd '{}' && gnuplot '{}'", folder.string(), script.filename().string()).c_str());
   std::error_code ignored;
   std::filesystem::remove(script, ignored);
   if (failed != 0) return failure(fmt::format("gnuplot failed on {}; the figures are in {}", chart.name, csv.string()));

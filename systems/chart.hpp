@@ -36,7 +36,7 @@ struct Chart {
 // Where no other point is both faster and truer. One flag a point.
 std::vector<bool> on_hull(const std::vector<ChartPoint>&);
 
-// NAME.csv, and with gnuplot NAME.svg and NAME.png. Without gnuplot it warns and writes the table alone.
+// NAME.csv, and with gnuplot NAME.svg and NAME.png. Without gnuplot it warns and leaves NAME.gnuplot to draw them with.
 Result<void> write_chart(const std::filesystem::path& folder, const Chart&);
 
 // What a chart is made with. progress gets 0 to 1; software: timings by glFinish, smaller pictures.
