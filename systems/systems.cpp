@@ -18,7 +18,9 @@
 #include "systems/rainfall/layered/motion.hpp"
 #include "systems/rainfall/near_drops/near.hpp"
 #include "systems/rainfall/passes.hpp"
+#include "systems/rainfall/streaks/chart.hpp"
 #include "systems/rainfall/snow/extract.hpp"
+#include "systems/rainfall/sprites/sprites.hpp"
 #include "systems/scene/propagate.hpp"
 #include "systems/walker/walk.hpp"
 
@@ -54,6 +56,13 @@ std::vector<SystemEntry<SystemContext>> all_systems() {
        .needs = {"emitter"},
        .after = {"rainfall"},
        .run = [](SystemContext& c) { simulate_layered(c.registry, c.time_s); }},
+      {.name = "sprites",
+       .phase = Phase::simulate,
+       .reads = {"emitter", "rain_motion", "streak_sprites", "time"},
+       .writes = {"sprite_motion"},
+       .needs = {"streak_sprites"},
+       .after = {"rainfall"},
+       .run = [](SystemContext& c) { simulate_sprites(c.registry, c.time_s); }},
       {.name = "snowfall",
        .phase = Phase::simulate,
        .reads = {"snowfall", "wind", "time"},
@@ -125,6 +134,13 @@ std::vector<SystemEntry<SystemContext>> all_systems() {
        .needs = {"emitter"},
        .after = {"extract_rainfall"},
        .run = [](SystemContext& c) { extract_layered(c.registry, *c.frame, c.time_s, c.interpolation); }},
+      {.name = "extract_sprites",
+       .phase = Phase::extract,
+       .reads = {"emitter", "streak_sprites", "sprite_motion", "frame.rain"},
+       .writes = {"frame.rain.sprites"},
+       .needs = {"emitter"},
+       .after = {"extract_rainfall"},
+       .run = [](SystemContext& c) { extract_sprites(c.registry, *c.frame, c.time_s); }},
       {.name = "extract_near_drops",
        .phase = Phase::extract,
        .reads = {"emitter", "near_drops", "frame.rain"},
@@ -188,6 +204,7 @@ std::vector<ChartOffer> all_charts() {
       {"rainfall", "all ways to draw falling rain, in three scenes", chart_rainfall},
       {"classes", "how many size classes of drops are enough", chart_classes},
       {"occlusion", "maps of shelter against rays, on a street of awnings and in the town", chart_shelter},
+      {"streaks", "size of the streak table against its error, and what nearest-four reading costs", chart_streaks},
   };
 }
 

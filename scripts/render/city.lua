@@ -56,8 +56,11 @@ local passes = {
   -- The drop field: its cells in view, their drops as streaks, and those laid over the picture.
   { pass = "rain_cells" },
   { pass = "rain_splat", depth = "depth", occlusion_map = "occlusion_map", near = "near_drops" },
+  { pass = "rain_sprites", depth = "depth", occlusion_map = "occlusion_map" },
   { pass = "rain_composite", colour = "colour", environment = "environment" },
 
+  { pass = "double_cone", colour = "colour", depth = "depth", occlusion_map = "occlusion_map",
+    environment = "environment", rain_light = "rain_light" },
   { pass = "layered_composite", colour = "colour", depth = "depth", occlusion_map = "occlusion_map",
     environment = "environment", rain_light = "rain_light" },
   -- Drops near the eye show the world: captured in six faces (of so many pixels), and those drops.
@@ -71,6 +74,8 @@ local passes = {
   { pass = "snow_cells" },
   { pass = "snow_field", depth = "depth", occlusion_map = "occlusion_map" },
   { pass = "snow_composite", colour = "colour", environment = "environment" },
+  { pass = "snow_cone", colour = "colour", depth = "depth", occlusion_map = "occlusion_map",
+    environment = "environment", snow_light = "snow_light" },
 
   -- An artist's own pass: a compute shader of yours over any resource. Say this makes reds burn (image "picture_in" of
   -- the shader is read and written; parameters are its uniforms; every pixel is one invocation):

@@ -8,6 +8,7 @@
 #include <string>
 #include <string_view>
 
+#include "systems/rainfall/cone/passes.hpp"
 #include "systems/rainfall/layered/passes.hpp"
 #include "systems/rainfall/layers.hpp"
 #include "systems/rainfall/light_volume.hpp"
@@ -16,6 +17,8 @@
 #include "systems/rainfall/lists.hpp"
 #include "systems/rainfall/optics.hpp"
 #include "systems/rainfall/snow/passes.hpp"
+#include "systems/rainfall/sprites/passes.hpp"
+#include "systems/rainfall/streaks/gpu.hpp"
 #include "systems/rainfall/sums.hpp"
 
 namespace petrichor {
@@ -107,11 +110,14 @@ void prepare(const RainGpu& gpu, PassContext& context, const Program& program) {
   program.set("distances", distances(context.frame));
   program.set("least_radiance", gpu.least_radiance);
   program.set("use_occlusion", int(context.has("occlusion_map")));
+  bind_streak_table(*gpu.optics, context.frame, program);
   program.set("near_choice", context.has("near") ? near_uniform(near_choice(context.frame)) : glm::vec4(0.0f));
 }
 
 void draw_on_gpu(RainGpu& gpu, PassContext& context, bool scene, bool lamps) {
   bind_streak_lists(*gpu.sums, false);
+  for (const char* lines : {"long_lines", "long_capsules"})
+    bind_streak_table(*gpu.optics, context.frame, context.program(drop_shader(lines, scene, lamps)));
   prepare(gpu, context, context.program(drop_shader("splat", scene, lamps)));
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT);
   glBindBuffer(GL_DISPATCH_INDIRECT_BUFFER, gpu.command.id);
@@ -122,6 +128,8 @@ void draw_on_gpu(RainGpu& gpu, PassContext& context, bool scene, bool lamps) {
 
 void draw_in_software(RainGpu& gpu, PassContext& context, bool scene, bool lamps) {
   bind_streak_lists(*gpu.sums, true);
+  for (const char* lines : {"lines", "capsules"})
+    bind_streak_table(*gpu.optics, context.frame, context.program(drop_shader(lines, scene, lamps)));
   glMemoryBarrier(GL_ALL_BARRIER_BITS);
   RainCommand command;
   read_buffer(gpu.command, &command, sizeof command);
@@ -248,23 +256,26 @@ std::vector<PassOffer> rainfall_passes() {
   offers[2].wanted = [](const Frame& frame) { return rains(frame) || draws_sprites(frame); };
   offers[2].execute = [gpu](PassContext& context) { composite(*gpu, context); };
   offers.push_back(rain_light_pass(gpu->optics));
+  for (PassOffer& offer : cone_passes(gpu->optics)) offers.push_back(std::move(offer));
   for (PassOffer& offer : layered_passes(gpu->optics)) offers.push_back(std::move(offer));
   for (PassOffer& offer : near_drops_passes(gpu->optics)) offers.push_back(std::move(offer));
+  for (PassOffer& offer : sprites_passes(gpu->optics, gpu->sums)) offers.push_back(std::move(offer));
   for (PassOffer& offer : snow_passes()) offers.push_back(std::move(offer));
   return offers;
 }
 
 RainStats rain_stats(const Frame& frame) {
+  const std::uint32_t sprites = sprites_drawn(frame);
   const auto gpu = newest.lock();
   if (!gpu || gpu->frame_number != frame.number || gpu->layer_count == 0 || gpu->command.bytes < sizeof(RainCommand))
-    return {};
+    return {sprites, 0};
   // By way of a copy: a driver may move a buffer that is read into the computer's memory, where atomics are slow.
   RainCommand command;
   if (gpu->read_back.bytes == 0) gpu->read_back = make_buffer(sizeof command);
   glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
   glCopyNamedBufferSubData(gpu->command.id, gpu->read_back.id, 0, 0, sizeof command);
   read_buffer(gpu->read_back, &command, sizeof command);
-  return {command.drops_drawn, std::min(command.cell_count, gpu->capacity)};
+  return {command.drops_drawn + sprites, std::min(command.cell_count, gpu->capacity)};
 }
 
 }  // namespace petrichor

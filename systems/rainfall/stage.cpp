@@ -132,11 +132,18 @@ Result<void> RainStage::load() {
     splat["near"] = "near_drops";
     table["resources"]["near_drops"] = table["resources"]["near_environment"] = {{"format", "none"}};
     table["passes"].push_back(splat);
+    Json sprites = {{"pass", "rain_sprites"}, {"parameters", {{"path", set_.path}}}};
+    for (const char* slot : {"depth", "occlusion_map"})
+      if (splat.contains(slot)) sprites[slot] = splat[slot];
+    table["passes"].push_back(sprites);
     table["passes"].push_back({{"pass", "rain_composite"}, {"colour", "colour"}});
     Json layered = {{"pass", "layered_composite"}, {"colour", "colour"}, {"rain_light", "rain_light"}};
     if (set_.wall_hides) layered["depth"] = "depth";
     if (set_.map) layered["occlusion_map"] = "map";
     table["passes"].push_back(layered);
+    Json cone = layered;
+    cone["pass"] = "double_cone";
+    table["passes"].push_back(cone);
     Json near = splat;
     near["pass"] = "near_drops";
     near["colour"] = "colour";
@@ -151,6 +158,10 @@ Result<void> RainStage::load() {
     table["passes"].push_back({{"pass", "snow_cells"}});
     table["passes"].push_back(snow);
     table["passes"].push_back({{"pass", "snow_composite"}, {"colour", "colour"}});
+    cone["pass"] = "snow_cone";
+    cone.erase("rain_light");
+    cone["snow_light"] = "snow_light";
+    table["passes"].push_back(cone);
   }
   table["output"] = "colour";
   if (set_.present) {

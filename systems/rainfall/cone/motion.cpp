@@ -1,0 +1,151 @@
+// The cone over time: from components to its track, and to the frame.
+#include <algorithm>
+#include <cmath>
+
+#include "components/view.hpp"
+#include "systems/rainfall/cone/cone.hpp"
+#include "systems/rainfall/drop_sizes.hpp"
+#include "systems/rainfall/extract.hpp"
+#include "systems/rainfall/snow/extract.hpp"
+#include "systems/rainfall/snow/flakes.hpp"
+
+namespace petrichor {
+namespace {
+
+template <class Component, class R>
+const Component* first_of(R& registry, Entity& entity) {
+  const Component* first = nullptr;
+  registry.template view<Component>().each([&](Entity e, const Component& found) {
+    if (!first || entity_index(e) < entity_index(entity)) entity = e, first = &found;
+  });
+  return first;
+}
+
+// Whose entity carries the cone and its settings.
+struct Source {
+  Entity entity{};
+  const Emitter* emitter = nullptr;
+  const Snowfall* snow = nullptr;
+  DoubleCone set;
+};
+template <class R>
+Source source_of(R& registry) {
+  Source s;
+  Entity snow_entity{};
+  s.emitter = first_of<Emitter>(registry, s.entity);
+  s.snow = first_of<Snowfall>(registry, snow_entity);
+  if (!s.emitter) s.entity = snow_entity;
+  if (s.emitter || s.snow)
+    if (const DoubleCone* set = registry.template find<DoubleCone>(s.entity)) s.set = *set;
+  return s;
+}
+
+const Camera* active_camera(Registry& registry, Entity& entity) {
+  const Camera* chosen = nullptr;
+  registry.view<Camera>().each([&](Entity e, const Camera& camera) {
+    if (camera.active && (!chosen || entity_index(e) < entity_index(entity))) entity = e, chosen = &camera;
+  });
+  return chosen;
+}
+
+// The mean fall by extinction, solved again only where the emitter's settings have changed.
+void know_fall(ConeMotion& m, const Emitter& e) {
+  if (m.rate == e.rain_mm_per_hour && m.drop_sizes == e.drop_sizes && m.gamma_shape == e.gamma_shape &&
+      m.minimum_mm == e.minimum_diameter_mm && m.maximum_mm == e.maximum_diameter_mm)
+    return;
+  m.rate = e.rain_mm_per_hour, m.drop_sizes = e.drop_sizes, m.gamma_shape = e.gamma_shape;
+  m.minimum_mm = e.minimum_diameter_mm, m.maximum_mm = e.maximum_diameter_mm;
+  const auto classes = make_drop_classes(e);
+  double sum = 0.0, fall = 0.0;
+  for (const DropClass& c : classes)
+    if (c.drawn) sum += extinction_per_m(c), fall += extinction_per_m(c) * c.fall_speed_mps;
+  if (sum > 0.0) m.fall_mps = fall / sum;
+  m.wind_class = 0;
+  for (std::size_t k = 0; k < classes.size(); ++k)
+    if (std::abs(classes[k].fall_speed_mps - m.fall_mps) < std::abs(classes[m.wind_class].fall_speed_mps - m.fall_mps))
+      m.wind_class = k;
+}
+
+ConeFlow rain_flow(const ConeMotion& m, const RainMotion& rain, const Emitter& e, float exposure_s, double time_s) {
+  ConeFlow flow;
+  const std::size_t k = std::min(m.wind_class, rain.wind.answers.size() - 1);
+  flow.velocity_mps = glm::vec3(drift_at(rain.wind, k, time_s).velocity_mps - glm::dvec3(0.0, m.fall_mps, 0.0));
+  flow.camera_mps = m.camera_mps;
+  flow.exposure_s = exposure_s;
+  flow.mm_per_hour = e.rain_mm_per_hour;
+  return flow;
+}
+
+ConeFlow snow_flow(const ConeMotion& m, const SnowMotion& snow, const Snowfall& s, float exposure_s, double time_s) {
+  ConeFlow flow;
+  const std::size_t k = snow.wind.answers.size() / 2;
+  static const double fall = cone_means(ConeTexture::snow_coarse).speed_mps;
+  flow.velocity_mps = glm::vec3(drift_at(snow.wind, k, time_s).velocity_mps - glm::dvec3(0.0, fall, 0.0));
+  flow.camera_mps = m.camera_mps;
+  flow.exposure_s = exposure_s;
+  flow.mm_per_hour = s.snow_mm_per_hour;
+  flow.snow = true;
+  return flow;
+}
+
+}  // namespace
+
+void simulate_cone(Registry& registry, double time_s, double step_s) {
+  const Source source = source_of(registry);
+  if (!source.emitter && !source.snow) return;
+  ConeMotion* motion = registry.find<ConeMotion>(source.entity);
+  if (!motion) motion = &registry.emplace<ConeMotion>(source.entity);
+  Entity eye{};
+  float exposure_s = 1.0f / 60.0f;
+  if (const Camera* camera = active_camera(registry, eye)) {
+    exposure_s = camera->exposure_s;
+    const auto* tracked = registry.find<CameraMotion>(eye);
+    if (tracked && tracked->moving_known && step_s > 0.0)
+      motion->camera_mps = (tracked->position_m - tracked->previous_position_m) / static_cast<float>(step_s);
+  }
+  if (source.emitter) {
+    know_fall(*motion, *source.emitter);
+    const RainMotion* rain = registry.find<RainMotion>(source.entity);
+    if (rain && !rain->wind.answers.empty())
+      advance_cone(motion->rain, source.set, rain_flow(*motion, *rain, *source.emitter, exposure_s, time_s), time_s);
+  }
+  Entity snow_entity{};
+  if (first_of<Snowfall>(registry, snow_entity)) {
+    const SnowMotion* snow = registry.find<SnowMotion>(snow_entity);
+    if (snow && !snow->wind.answers.empty())
+      advance_cone(motion->snow, source.set, snow_flow(*motion, *snow, *source.snow, exposure_s, time_s), time_s);
+  }
+}
+
+void extract_cone(const Registry& registry, Frame& frame, double time_s) {
+  const Source source = source_of(registry);
+  const FrameCamera& camera = frame.camera;
+  const auto* motion = source.emitter || source.snow ? registry.find<ConeMotion>(source.entity) : nullptr;
+  if (frame.rain) {
+    if (motion && motion->rain.time_s >= 0.0) {
+      ConeFlow flow;
+      flow.exposure_s = camera.exposure_s;
+      flow.mm_per_hour = frame.rain->rain_mm_per_hour;
+      frame.rain->cone =
+          frame_cone(motion->rain, source.set, flow, camera.angular_velocity_radps, frame.step_s, time_s);
+      update_onsets(*frame.rain);
+    } else {
+      set_cone(*frame.rain, source.set, camera, frame.step_s, time_s);
+    }
+  }
+  if (frame.snow) {
+    if (motion && motion->snow.time_s >= 0.0) {
+      ConeFlow flow;
+      flow.exposure_s = camera.exposure_s;
+      flow.mm_per_hour = frame.snow->snow_mm_per_hour;
+      flow.snow = true;
+      frame.snow->cone =
+          frame_cone(motion->snow, source.set, flow, camera.angular_velocity_radps, frame.step_s, time_s);
+      update_onsets(*frame.snow);
+    } else {
+      set_cone(*frame.snow, source.set, camera, frame.step_s, time_s);
+    }
+  }
+}
+
+}  // namespace petrichor
