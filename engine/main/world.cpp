@@ -11,6 +11,7 @@
 #include "engine/core/log.hpp"
 #include "engine/core/paths.hpp"
 #include "systems/gpu_scene.hpp"
+#include "systems/rainfall/streaks/gpu.hpp"
 #include "systems/scene/propagate.hpp"
 #include "systems/scene/spawn.hpp"
 
@@ -167,6 +168,9 @@ Result<void> World::apply_options(const SubjectOptions& options) {
       }
     if (!found) return wrong_call(fmt::format("--technique {}: no such technique. There are:{}", text, known));
   }
+  // Needed unless streaks are even.
+  if (techniques_[Effect::streaks].rung != static_cast<std::uint8_t>(StreakRung::even))
+    if (auto table = shared_streak_table(); !table) log_warn("{}", table.error().message);
   return {};
 }
 

@@ -7,6 +7,7 @@ layout(local_size_x = 32) in;
 #include "systems/rainfall/near_drops/near_choice.glsl"
 #include "systems/rainfall/cell_lights.glsl"
 #include "systems/rainfall/streak_lists.glsl"
+#include "systems/rainfall/streaks/lamp_bands.glsl"
 
 layout(std430, binding = RAIN_CELLS_BINDING) readonly buffer RainCells { RainCellGpu cells[]; };
 uniform uint first_cell, end_cell;
@@ -50,6 +51,15 @@ void main() {
 #endif
     vec2 span = abs(s.to - s.from);
     float reach = max(span.x, span.y);
+#ifdef LAMPS
+    float cycles = band_cycles(falls.w, s.area, s.radius, reach, drop_light);
+    StrongestLamp strongest = StrongestLamp(vec3(0.0, 1.0, 0.0), 0.0);
+    for (int i = 0; i < RAIN_CELL_LIGHTS; ++i) {
+      if (cycles == 0.0) break;
+      compare_lamp(strongest, near_lights[i], s.middle, distance_to_eye);
+    }
+    streak_bands = bands_of(strongest, cycles, s.middle, sum);
+#endif
     if (s.radius < 0.5 && reach < 1.0) {
       draw_point(s.from, s.to, s.depths, s.area);
     } else {

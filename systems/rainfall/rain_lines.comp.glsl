@@ -1,6 +1,9 @@
 #version 450 core
 // Draws a list of streaks: on GPUs several invocations a streak, for a near drop makes as much work as thousands of far
 // ones; in software OpenGL one, for there the streaks of a list are of similar length.
+#ifdef LAMPS
+#define BANDS
+#endif
 #include "systems/rainfall/raster.glsl"
 layout(local_size_x = RAIN_LINES_GROUP) in;
 
@@ -39,6 +42,7 @@ void main() {
   drop_bits = streaks[slot].bits.x;
 #ifdef LAMPS
   drop_light = streaks[slot].light.rgb;
+  unpack_bands(streaks[slot].bits.yzw, drop_bits);
 #endif
 #ifdef CAPSULES
   draw_capsule(from_to.xy, from_to.zw, depths_area.xy, depths_area.w, depths_area.z);

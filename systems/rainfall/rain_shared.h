@@ -65,7 +65,7 @@ struct RainStreakGpu {
   vec4 from_to;      // pixels
   vec4 depths_area;  // z: area, w: radius, pixels
   vec4 light;        // output radiance from lamps
-  uvec4 bits;        // x: random
+  uvec4 bits;        // x: random, yzw: bands of the lamplight along it (streaks/bands.glsl)
 };
 
 #ifdef __cplusplus

@@ -6,6 +6,7 @@ layout(local_size_x = 64) in;
 #include "systems/rainfall/raster.glsl"
 #include "systems/rainfall/near_drops/near_choice.glsl"
 #include "systems/rainfall/streak_lists.glsl"
+#include "systems/rainfall/streaks/lamp_bands.glsl"
 
 layout(std430, binding = RAIN_CELLS_BINDING) readonly buffer RainCells { RainCellGpu cells[]; };
 uniform uint capacity;
@@ -34,6 +35,16 @@ bool draw_drop(RainCellGpu cell, RainLayerGpu layer, uint m) {
   vec2 span = abs(s.to - s.from);
   float reach = max(span.x, span.y);
   bool capsule = s.radius >= 0.5;
+#ifdef LAMPS
+  float cycles = band_cycles(falls.w, s.area, s.radius, reach, drop_light);
+  StrongestLamp strongest = StrongestLamp(vec3(0.0, 1.0, 0.0), 0.0);
+  for (int i = 0; i < RAIN_CELL_LIGHTS; ++i) {
+    if (i >= lights_here || cycles == 0.0) break;
+    uint pair = cell.lights[i >> 1];
+    compare_lamp(strongest, lights[(i & 1) == 0 ? pair & 0xffffu : pair >> 16u], s.middle, distance_to_eye);
+  }
+  streak_bands = bands_of(strongest, cycles, s.middle, sum);
+#endif
   if ((capsule || reach >= float(RAIN_LONG_PIXELS)) && list_streak(s, reach, false, drop_light, bits)) return true;
   if (capsule) draw_capsule(s.from, s.to, s.depths, s.radius, s.area);
   else if (reach < 1.0) draw_point(s.from, s.to, s.depths, s.area);

@@ -12,6 +12,8 @@ layout(std430, binding = RAIN_COMMAND_BINDING) buffer RainCommand {
 };
 layout(std430, binding = RAIN_STREAKS_BINDING) buffer RainStreaks { RainStreakGpu streaks[]; };
 
+uvec3 streak_bands = uvec3(0u);  // of the streak that is listed next: pack_bands() of streaks/bands.glsl, or 0
+
 // False: the list is full.
 bool list_streak(Streak s, float reach, bool smooth_line, vec3 light, uint bits) {
 #ifdef SOFTWARE
@@ -35,7 +37,7 @@ bool list_streak(Streak s, float reach, bool smooth_line, vec3 light, uint bits)
 #ifdef LAMPS
   streaks[slot].light = vec4(light, 0.0);
 #endif
-  streaks[slot].bits.x = bits;
+  streaks[slot].bits = uvec4(bits, streak_bands);
   return true;
 }
 
