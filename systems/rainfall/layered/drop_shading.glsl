@@ -6,11 +6,11 @@ layout(binding = 3) uniform sampler2DArray drop_normals;  // xy: normal in the p
 uniform float strength;   // of the rain
 uniform float lightning;  // l_b = 1 + k_c (L_1 + L_2)
 uniform float milk;
-uniform float milk_cd_m2;  // what milk shines with: white on the picture
 
 // The lightning's bias acts on opacity, and on reflection, refraction and specular light alike.
 float artist_opacity(float opacity) { return clamp(opacity * strength * lightning, 0.0, 1.0); }
-vec3 artist_light(vec3 radiance) { return mix(radiance * lightning, vec3(milk_cd_m2), milk); }
+// light: what drops of this opacity send, output units; milk shines with what the picture shows as white.
+vec3 artist_light(vec3 light, float opacity) { return mix(light * lightning, vec3(opacity), milk); }
 
 #ifdef PUBLISHED
 // "a variation of the Fresnel equations"
@@ -27,7 +27,10 @@ float drop_fresnel(float c) {
 }
 #endif
 
-#ifdef ENVIRONMENT
+#ifdef NORMALS
+// What ambient.glsl says of a drop that is not resolved.
+vec3 drop_means(vec3 ray) { return 0.93 * environment_radiance(ray, 0.55) + 0.0664 * environment_mean(); }
+
 // Radiance of a drop's image at a place across it (-1 to 1), refracted and reflected, cd/m2. Its shape is a layer of the
 // normal map; a drop that moves by many diameters while the shutter is open is blurred along: a bias of the level of
 // detail, as is the size of its image.

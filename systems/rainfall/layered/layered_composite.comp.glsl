@@ -11,35 +11,36 @@
 layout(local_size_x = 8, local_size_y = 8) in;
 #include "systems/frame.glsl"
 #include "systems/rainfall/layered/layered_shared.h"
-#include "systems/rainfall/ambient.glsl"
-#ifdef LAMPS
-#include "systems/rainfall/light_volume.glsl"
-layout(binding = 2) uniform sampler2DArray shell_light;  // lamplight of each shell's mean
+#ifdef NORMALS
+#include "systems/lighting/environment.glsl"
 #endif
-#ifdef SCENE
-#include "systems/occlusion/occlusion.glsl"
-layout(binding = 0) uniform sampler2D scene_depth;
-uniform bool use_occlusion;
-#endif
-layout(binding = 1) uniform usampler2D placement;  // 8 bits each: mark, place across, place along, distance
 #include "systems/rainfall/layered/drop_shading.glsl"
+layout(binding = 0) uniform sampler2D scene_depth;
+uniform bool use_depth;
+// Two cells, one above the other, in each texel. 8 bits each: mark, place across, place along, distance.
+layout(binding = 1) uniform usampler2D placement;
+layout(binding = 2) uniform sampler2DArray drop_light;
+layout(binding = 4) uniform sampler2DArray haze;
+layout(binding = 5) uniform sampler2D open_share;
 layout(rgba16f, binding = 0) uniform image2D colour;
 
 uniform vec3 ray_corner, ray_x, ray_y;  // ray of a pixel, one metre deep: corner + x ray_x + y ray_y
 uniform vec3 way, side, across;         // of the rain past the camera, unit; and what azimuths are told by
-uniform float streak_m;                 // way past the camera while the shutter is open
-uniform vec3 turned;                    // of the camera meanwhile: axis times angle, world
-uniform float cell_m;                   // height of a cell along the way
-uniform int stretch;                    // log2 of how much more than layered_cell_m that is
+uniform float streak_cells;             // way past the camera while the shutter is open, in cells
+uniform float travelled;                // before that, in cells
+uniform float per_cell;                 // cells in a metre
+uniform uint stretch;                   // cells are 2^stretch times as tall as the placement's
 uniform float odd_share;                // of every other cell: 1, towards 0 before they merge by twos
-uniform float travelled[LAYERED_LEVELS];  // in cells of each level
-uniform int turn_level;                   // columns are wider by 2^this while the camera turns fast
-uniform vec4 shells[LAYERED_SHELLS];      // from, to, m; opacity of the whole shell; drops per m2 of shell in it
-uniform float columns[LAYERED_SHELLS];    // round the way, at its equator
+uniform vec4 shells[LAYERED_SHELLS];    // from, m; depth, m; opacity of the streaks; drops in a cell a metre away
+uniform int shell_count;
+uniform float columns[LAYERED_SHELLS];  // round the way, at its equator
 uniform float pixel_rad;
-uniform float drop_m;                     // diameter of the drop that stands for all: by D^4 over D^2
-uniform float near_depth;                 // optical depth per metre, for what is nearer than the first shell
+uniform float drop_m;                   // diameter of the drop that stands for all: by D^4 over D^2
+uniform bool use_open_share;
 uniform uint salt;
+#ifdef TURNING
+uniform vec3 turned;                    // of the camera while the shutter is open: axis times angle, world
+#endif
 
 uint mixed(uint h) {
   h = (h ^ (h >> 15u)) * 0x9e3779b1u;
@@ -50,97 +51,98 @@ uint mixed(uint h) {
 // What all shells share at a pixel.
 struct View {
   vec3 ray;
-  vec2 place;       // of the picture, 0 to 1
-  float slant;
-  float end;        // distance to the scene, m
-  float azimuth;    // turns, 0 to 1
-  float s, sine, inverse_sine;
-  vec2 turn_rad;    // of the picture past a still direction while the shutter is open: azimuth, s
-  float pixel;      // radians
-  uint sector;      // azimuth in 64 parts, for the border between levels
+  float end;         // distance to the scene, m
+  float azimuth;     // in columns of one turn
+  float s;
+  float per_metre;   // cells in a metre, here
+  float merged;      // columns and rows that are one here
+  float travelled;   // cells
+  float sine2;
+  float aside;       // pixel over the sine, radians
+  float drop_cells;  // height of a drop
+  float streak;      // cells
+  uint salt;
+#ifdef TURNING
+  vec2 turn;         // of the picture past a still direction while the shutter is open: azimuth (turns), s
+#endif
 };
 
-// Streaks of one shell: share of a pixel's time that they cover, over what it is on average, and the place of the
-// strongest. x: cover; y: its distance; z: across the drop, -1 to 1; w: its random byte.
 struct Streaks {
-  float haze, cover;
+  float cover;     // of a pixel's time, over its mean
+  float along;     // 0 to 1 through the shell: of the strongest drop
+  float aside;     // across that drop, -1 to 1
   float distance_m;
-  float across;
-  float width_px;
   uint kind;
 };
 
 Streaks streaks_of(View v, int shell) {
   vec4 extent = shells[shell];
-  // Towards the apexes columns narrow: there cells double. Which pixels double differs by sector, so that the border is
-  // ragged. (Which level it is costs a logarithm, which exponents of floats give.)
-  float raised = v.inverse_sine * (1.0 + 0.4 * float(mixed(v.sector + 64u * uint(shell)) & 255u) / 256.0);
-  int level = clamp((floatBitsToInt(raised) >> 23) - 127, 0, LAYERED_LEVELS - 1);
-  float doubled = float(1 << level);
-  float around = columns[shell] / (doubled * float(1 << turn_level));
+  float around = columns[shell] * v.merged;
   float x = v.azimuth * around;
   float column = floor(x);
   x -= column;
-  uint h = mixed(uint(column) + (uint(shell) + 4u * uint(level)) * 0x10000u ^ salt);
-  float distance_m = mix(extent.x, extent.y, float(h & 0xffffu) / 65536.0);
-
-  float column_rad = v.sine * 6.2831853 / around;
-  float cell_height = cell_m * doubled;
-  float per_s = distance_m / cell_height;
-  float y = v.s * per_s - travelled[level];
-  vec2 pixel = v.pixel * vec2(1.0 / column_rad, v.inverse_sine * per_s);
-  // The streak, from the opening to the closing of the shutter.
-  vec2 streak = vec2(v.turn_rad.x * around * 0.15915494, streak_m / cell_height + v.turn_rad.y * per_s);
-  float soft = max(pixel.y, drop_m * v.inverse_sine / cell_height);
-  float along = max(abs(streak.y), 0.5 * soft), turned_back = streak.y < 0.0 ? -1.0 : 1.0;
-  along = min(along, 1.0 - min(soft, 0.5));
-  float slope = streak.x * turned_back / along;  // columns per cell
-  float slope_angle = slope * column_rad / (cell_height * v.sine / distance_m);
-  float half_width = max(pixel.x, 0.5 * (drop_m / (distance_m * column_rad) + pixel.x));
-  half_width = min(half_width * sqrt(1.0 + slope_angle * slope_angle), 0.5);
-
-  // Drops in a cell: as many as the rain has there. Where that is more than one, one stands for all, with the
-  // deviation that they would have.
-  float expected = extent.w * distance_m * cell_height * v.sine * column_rad;
+  uint h = mixed(uint(column) + uint(shell) * 0x10000u ^ v.salt);
+  float distance_m = extent.x + extent.y * (float(h & 0xffffu) * (1.0 / 65536.0));
+  float per_s = distance_m * v.per_metre;
+  float y = v.s * per_s - v.travelled;
+  // A streak reaches from where the shutter opened to where it closed; soft over a pixel or the drop itself.
+  vec2 pixel = v.aside * vec2(around * 0.15915494, per_s);
+  float soft = min(max(pixel.y, v.drop_cells), 0.5);
+  float half_width = max(pixel.x, 0.5 * (v.drop_cells * around * 0.15915494 / per_s + pixel.x));
+  float down = y - 0.5 * soft;
+#ifdef TURNING
+  float streak = v.streak + v.turn.y * per_s, back = streak < 0.0 ? -1.0 : 1.0;
+  float along = min(max(abs(streak), 0.5 * soft), 1.0 - soft);
+  float slope = v.turn.x * around * back / along;  // columns a cell
+  // Of the picture: a column is 2 pi sine / around wide, a cell sine / per_s high.
+  float steep = slope * 6.2831853 * per_s / around;
+  half_width *= sqrt(1.0 + steep * steep);
+  down -= back < 0.0 ? along : 0.0;
+#else
+  float along = min(max(v.streak, 0.5 * soft), 1.0 - soft);
+#endif
+  half_width = min(half_width, 0.5);
+  float inverse_width = 1.0 / half_width, inverse_ramp = 1.0 / min(along, soft);
+  // As many drops as the rain has in a cell; where that is more than one, one stands for all, and the haze for what
+  // deviates less.
+  float expected = extent.w * distance_m * v.sine2 / (v.merged * v.merged);
   float present = min(1.0, 2.0 * expected / (1.0 + odd_share));
-  float drops = present * 0.5 * (1.0 + odd_share);
-  float contrast = min(1.0, sqrt(drops / max(expected, 1e-9)));
 
+  float row = floor(down);
+  uvec2 pair = texelFetch(placement, ivec2(int(h >> 16u) & 255, (int(row) + int((h >> 28u) << 4u >> stretch)) & 255), 0).xy;
+  float odd = fract(0.5 * row) > 0.25 ? odd_share : 1.0, even = odd_share + 1.0 - odd;
   Streaks found;
-  found.distance_m = distance_m;
-  found.across = 0.0;
-  found.kind = 0u;
-  found.width_px = drop_m / (distance_m * v.pixel);
-  float sum = 0.0, most = 0.0;
-  float first = y - 0.5 * soft - (turned_back < 0.0 ? along : 0.0);
-  int row = int(floor(first));
-  float inverse_ramp = 1.0 / min(along, soft), inverse_length = 1.0 / max(along, soft);
+  found.cover = 0.0;
+  float most = -1.0;
+  float closed = row - y;
+  float reach = (v.end - extent.x) / extent.y;  // drops beyond it stand behind the scene
   for (int i = 0; i < 2; ++i) {
-    int cell = row + i;
-    uvec4 drop = texelFetch(placement, ivec2(int(h >> 16u) & 255, ((cell << stretch) + int(h >> 24u)) & 255), 0);
-    float weight = clamp(present * 256.0 - float(drop.x), 0.0, 1.0);
-    if ((cell & 1) != 0) weight *= odd_share;
-    float up = float(cell) + (float(drop.z) + 0.5) / float(256 << stretch) - y;  // from here to the drop's end
-    float from_end = turned_back * up + 0.5 * soft;
-    float length_here = min(from_end, along + soft - from_end);
-    weight *= clamp(length_here * inverse_ramp, 0.0, 1.0);
-    // Columns close on themselves, so that the mean over each is even.
-    float aside = x - (float(drop.y) + 0.5) / 256.0 + slope * up;
-    aside -= round(aside);
-    weight *= max(1.0 - abs(aside) / half_width, 0.0);
-    float stands_m = mix(extent.x, extent.y, (float(drop.w) + 0.5) / 256.0);
-    weight = stands_m < v.end ? weight : 0.0;  // no streak in front of what stands before it
-    sum += weight;
+    uint drop = i == 0 ? pair.x : pair.y;
+    float up = closed + (float((drop >> 16u) & 255u) + 0.5) * (1.0 / 256.0);  // from here to the drop's end
+#ifdef TURNING
+    float from_end = back * up + 0.5 * soft;
+    float aside = x - (float((drop >> 8u) & 255u) + 0.5) * (1.0 / 256.0) + slope * up;
+#else
+    float from_end = up + 0.5 * soft;
+    float aside = x - (float((drop >> 8u) & 255u) + 0.5) * (1.0 / 256.0);
+#endif
+    aside -= floor(aside + 0.5);  // columns close on themselves, so that the mean over each is even
+    float weight = clamp(min(from_end, along + soft - from_end) * inverse_ramp, 0.0, 1.0) *
+                   max(1.0 - abs(aside) * inverse_width, 0.0) *
+                   clamp(present * 256.0 - float(drop & 255u), 0.0, 1.0) * (i == 0 ? odd : even);
+    float through = (float(drop >> 24u) + 0.5) * (1.0 / 256.0);
+    weight = through < reach ? weight : 0.0;  // no streak in front of what stands before it
+    found.cover += weight;
     if (weight > most) {
       most = weight;
-      found.distance_m = stands_m;
-      found.across = aside / half_width;
-      found.kind = drop.y;
+      found.along = through;
+      found.aside = aside * inverse_width;
+      found.kind = drop >> 8u;
     }
+    closed += 1.0;
   }
-  float before = clamp((v.end - extent.x) / (extent.y - extent.x), 0.0, 1.0);
-  found.haze = extent.z * (1.0 - contrast) * before;
-  found.cover = extent.z * contrast * sum * inverse_length / (half_width * max(drops, 1e-6));
+  found.cover *= extent.z * inverse_width / (max(along, soft) * max(present * 0.5 * (1.0 + odd_share), 1e-6));
+  found.distance_m = distance_m;
   return found;
 }
 
@@ -148,55 +150,67 @@ void main() {
   ivec2 at = ivec2(gl_GlobalInvocationID.xy);
   if (any(greaterThanEqual(at, ivec2(frame.size.xy)))) return;
   View v;
-  vec2 centre = vec2(at) + 0.5;
+  vec2 centre = vec2(at) + 0.5, place = centre * frame.size.zw;
   vec3 ray = ray_corner + centre.x * ray_x + centre.y * ray_y;
-  v.slant = length(ray);
-  v.ray = ray / v.slant;
-  v.place = centre * frame.size.zw;
+  float inverse_slant = inversesqrt(dot(ray, ray));
+  v.ray = ray * inverse_slant;
   v.end = 1e9;
-#ifdef SCENE
-  float depth = texelFetch(scene_depth, at, 0).r;
-  if (depth > 0.0) v.end = frame.camera_world_m.w / depth * v.slant;
-#endif
-  float cosine = clamp(dot(v.ray, way), -0.999999, 0.999999);
-  v.s = 0.5 * log((1.0 + cosine) / (1.0 - cosine));
-  float sine2 = 1.0 - cosine * cosine;
-  v.inverse_sine = inversesqrt(sine2);
-  v.sine = sine2 * v.inverse_sine;
+  if (use_depth) {
+    float depth = texelFetch(scene_depth, at, 0).r;
+    if (depth > 0.0) v.end = frame.camera_world_m.w / (depth * inverse_slant);
+  }
+  float cosine = clamp(dot(v.ray, way), -0.99999, 0.99999);
+  v.s = 0.34657359 * log2((1.0 + cosine) / (1.0 - cosine));
+  v.sine2 = 1.0 - cosine * cosine;
+  float inverse_sine = inversesqrt(v.sine2);
   v.azimuth = atan(dot(v.ray, across), dot(v.ray, side)) * 0.15915494 + 0.5;
-  v.azimuth -= floor(v.azimuth);
-  v.sector = uint(v.azimuth * 64.0);
-  v.pixel = pixel_rad / v.slant;
-  vec3 past = -cross(turned, v.ray);
-  v.turn_rad = vec2(dot(past, cross(way, v.ray)), dot(past, way)) / sine2;
-
-  vec3 around = drop_ambient(v.ray);
-  float transmittance = exp(-near_depth * min(v.end, shells[0].x));
-  vec3 light = around * (1.0 - transmittance);
-  for (int shell = 0; shell < LAYERED_SHELLS; ++shell) {
-    if (v.end <= shells[shell].x) break;
-    Streaks streaks = streaks_of(v, shell);
-#ifdef SCENE
-    if (use_occlusion && sheltered(v.ray * streaks.distance_m)) continue;
+  v.azimuth = min(v.azimuth - floor(v.azimuth), 0.999999);
+  // Towards the apexes columns narrow: there cells double. Which pixels double differs by sector, so that the border is
+  // ragged. (The exponent of the float is the logarithm that this takes.)
+  float raised = inverse_sine * (1.0 + 0.4 * float(mixed(uint(v.azimuth * 64.0)) & 255u) * (1.0 / 256.0));
+  int level = clamp((floatBitsToInt(raised) >> 23) - 127, 0, LAYERED_LEVELS - 1);
+  v.merged = intBitsToFloat((127 - level) << 23);
+  v.per_metre = per_cell * v.merged;
+  v.travelled = travelled * v.merged;
+  v.streak = streak_cells * v.merged;
+  v.aside = pixel_rad * inverse_slant * inverse_sine;
+  v.drop_cells = drop_m * inverse_sine * v.per_metre;
+  v.salt = salt ^ (uint(level) << 18u);
+#ifdef TURNING
+  vec3 past = cross(v.ray, turned);
+  v.turn = vec2(dot(past, cross(way, v.ray)) * 0.15915494, dot(past, way)) / v.sine2;
 #endif
-    float opacity = artist_opacity(streaks.haze + streaks.cover);
-    float haze_share = streaks.haze / max(streaks.haze + streaks.cover, 1e-9);
-    vec3 drop = around, haze = around;
-#ifdef ENVIRONMENT
-    if (streaks.cover > 0.0 && streaks.width_px > 1.0) {
-      float resolved = min(streaks.width_px - 1.0, 1.0);
-      vec3 shown = drop_shows(v.ray, way, streaks.across, streaks.kind, streaks.width_px, streak_m / drop_m);
-      drop = mix(drop, shown, resolved);
+
+  vec4 open = use_open_share ? textureLod(open_share, place, 0.0) : vec4(1.0);
+  float transmittance = 1.0;
+  vec3 light = vec3(0.0);
+  float hazy = 0.0;  // how many shells lie before the scene
+  for (int shell = 0; shell < shell_count; ++shell) {
+    hazy += clamp((v.end - shells[shell].x) / shells[shell].y, 0.0, 1.0);
+    if (v.end <= shells[shell].x) continue;
+    Streaks streaks = streaks_of(v, shell);
+    float opacity = artist_opacity(streaks.cover * open[shell]);
+    float part = floor(streaks.along * float(LAYERED_PARTS)) + float(shell * LAYERED_PARTS);
+    vec3 drop = textureLod(drop_light, vec3(place, part), 0.0).rgb;
+#ifdef NORMALS
+    float width_px = drop_m / (streaks.distance_m * pixel_rad * inverse_slant);
+    if (shell == 0 && streaks.cover > 0.0 && width_px > 1.0) {
+      vec3 shown = drop_shows(v.ray, way, streaks.aside, streaks.kind, width_px, streak_cells / (per_cell * drop_m));
+      // Lamps are in the drop's mean light alone.
+      drop += min(width_px - 1.0, 1.0) * (shown - drop_means(v.ray)) * frame.lens.w;
     }
 #endif
-#ifdef LAMPS
-    float slices = float(textureSize(rain_light_volume, 0).z);
-    float slice = log(streaks.distance_m / rain_light_near_m) / log(rain_light_far_m / rain_light_near_m) * slices;
-    haze += textureLod(shell_light, vec3(v.place, float(shell)), 0.0).rgb / frame.lens.w;
-    drop += textureLod(rain_light_volume, vec3(v.place, clamp(floor(slice), 0.0, slices - 1.0)), 0.0).rgb / frame.lens.w;
-#endif
-    light += transmittance * opacity * artist_light(mix(drop, haze, haze_share));
+    light += transmittance * opacity * max(drop, vec3(0.0));
     transmittance *= 1.0 - opacity;
   }
-  imageStore(colour, at, vec4(imageLoad(colour, at).rgb * transmittance + light, 1.0));
+  float below = floor(hazy);
+  vec4 even = textureLod(haze, vec3(place, below), 0.0);
+  if (hazy > below) even = mix(even, textureLod(haze, vec3(place, below + 1.0), 0.0), hazy - below);
+  even *= min(v.end / shells[0].x, 1.0);
+  float even_opacity = artist_opacity(even.a);
+  // Haze and streaks lie one in the other: each dims half of the other's light.
+  light = light * (1.0 - 0.5 * even_opacity) + even.rgb * (even_opacity / max(even.a, 1e-7)) * (0.5 + 0.5 * transmittance);
+  float opacity = 1.0 - transmittance * (1.0 - even_opacity);
+  light = artist_light(light, opacity);
+  imageStore(colour, at, vec4(imageLoad(colour, at).rgb * (1.0 - opacity) + light / frame.lens.w, 1.0));
 }

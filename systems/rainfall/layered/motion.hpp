@@ -17,7 +17,7 @@ namespace petrichor {
 constexpr double layered_cell_m = 0.25;
 constexpr int layered_placement = 256;  // texels along a side
 constexpr int layered_levels = 5;       // of cells towards the apexes, each twice the one before
-constexpr int layered_stretches = 8;    // of cells for fast motion
+constexpr int layered_stretches = 4;    // of cells for fast motion
 constexpr double layered_wrap_m = layered_cell_m * layered_placement * (1 << (layered_levels + layered_stretches));
 
 // On the emitter's entity: the rain's way past the camera. Written by simulate_layered only.

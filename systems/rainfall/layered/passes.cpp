@@ -9,6 +9,7 @@
 #include "systems/rainfall/layered/layered_shared.h"
 #include "systems/rainfall/layered/motion.hpp"
 #include "systems/rainfall/layered/textures.hpp"
+#include "systems/rainfall/sums.hpp"
 
 namespace petrichor {
 namespace {
@@ -17,25 +18,29 @@ static_assert(LAYERED_SHELLS == layered_shells && LAYERED_LEVELS == layered_leve
 
 struct LayeredGpu {
   std::shared_ptr<RainOptics> optics;
-  Texture placement, normals, shell_light, rain;
+  Texture placement, normals, drop_light, haze, open_share;
+  int stretch = -1;  // that the placement was made for
 };
 
 bool wanted(const Frame& frame) {
   return frame.rain && frame.rain->rain_mm_per_hour > 0.0f && frame.rain->share(RainRung::composite) > 0.0f;
 }
 
-void make_textures(LayeredGpu& gpu) {
-  if (gpu.placement.width) return;
-  gpu.placement = make_texture_2d(layered_placement, layered_placement, GL_RGBA8UI);
-  const auto placement = make_placement();
-  glTextureSubImage2D(gpu.placement.id, 0, 0, 0, layered_placement, layered_placement, GL_RGBA_INTEGER,
-                      GL_UNSIGNED_BYTE, placement.data());
-  constexpr int size = 64;
-  gpu.normals = make_texture_2d_array(size, size, LAYERED_SHAPES, GL_RGBA8_SNORM, full_mip_levels(size, size));
-  const auto normals = make_drop_normals(size, LAYERED_SHAPES);
-  glTextureSubImage3D(gpu.normals.id, 0, 0, 0, 0, size, size, LAYERED_SHAPES, GL_RGBA, GL_BYTE, normals.data());
-  glGenerateTextureMipmap(gpu.normals.id);
-  glTextureParameteri(gpu.normals.id, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
+void make_textures(LayeredGpu& gpu, int stretch) {
+  if (!gpu.normals.width) {
+    constexpr int size = 64;
+    gpu.normals = make_texture_2d_array(size, size, LAYERED_SHAPES, GL_RGBA8_SNORM, full_mip_levels(size, size));
+    const auto normals = make_drop_normals(size, LAYERED_SHAPES);
+    glTextureSubImage3D(gpu.normals.id, 0, 0, 0, 0, size, size, LAYERED_SHAPES, GL_RGBA, GL_BYTE, normals.data());
+    glGenerateTextureMipmap(gpu.normals.id);
+    glTextureParameteri(gpu.normals.id, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
+    gpu.placement = make_texture_2d(layered_placement, layered_placement, GL_RG32UI);
+  }
+  if (gpu.stretch == stretch) return;
+  gpu.stretch = stretch;
+  const auto cells = pair_placement(make_placement(), stretch);
+  glTextureSubImage2D(gpu.placement.id, 0, 0, 0, layered_placement, layered_placement, GL_RG_INTEGER, GL_UNSIGNED_INT,
+                      cells.data());
 }
 
 // The drop that stands for all of them: as many and as wide as have the rain's extinction (their D^2) and the deviation
@@ -72,109 +77,172 @@ std::string indexed(std::string_view name, int i) {
   return std::string(name) + "[" + std::to_string(i) + "]";
 }
 
-void set_artist(const Program& program, const FrameLayered& layered, float output_scale) {
+void set_artist(const Program& program, const FrameLayered& layered) {
   program.set("strength", layered.strength);
   program.set("lightning", 1.0f + layered.lightning);
   program.set("milk", layered.milk);
-  program.set("milk_cd_m2", 1.0f / output_scale);
 }
 
-void set_rays(const Program& program, const PassContext& context) {
-  const FrameUniforms& u = context.frame.uniforms;
+// Ray of a place of the picture, which is `wide` x `tall` units, one metre deep.
+void set_rays(const Program& program, const FrameUniforms& u, int across, int up) {
   const float tall = u.lens.x, wide = tall * u.lens.y;
   const glm::mat3 to_world = glm::transpose(glm::mat3(u.view));
   program.set("ray_corner", to_world * glm::vec3(-wide, -tall, -1.0f));
-  program.set("ray_x", to_world * glm::vec3(2.0f * wide / static_cast<float>(context.width), 0.0f, 0.0f));
-  program.set("ray_y", to_world * glm::vec3(0.0f, 2.0f * tall / static_cast<float>(context.height), 0.0f));
+  program.set("ray_x", to_world * glm::vec3(2.0f * wide / static_cast<float>(across), 0.0f, 0.0f));
+  program.set("ray_y", to_world * glm::vec3(0.0f, 2.0f * tall / static_cast<float>(up), 0.0f));
 }
 
-void set_shells(const Program& program, const FrameRain& rain, float pixel_rad) {
-  const MeanDrop drop = mean_drop(rain);
+// How cells lie in this frame.
+struct Cells {
+  float pixel_rad = 1e-3f;
+  glm::vec3 turned{0.0f};  // of the camera while the shutter is open, rad
+  bool turning = false;
+  int stretch = 0;  // cells are 2^stretch times as tall as layered_cell_m
+  double height_m = layered_cell_m, streak_m = 0.0;
+  float odd_share = 1.0f;
+  MeanDrop drop;
+  int shells = layered_shells;
+  std::array<float, layered_shells + 1> edges_m = layered_edges_m;
+  float columns[layered_shells] = {};
+  float opacity[layered_shells] = {};   // of a whole shell
+  float contrast[layered_shells] = {};  // share of it in streaks; the rest is haze
+  float drops[layered_shells] = {};     // in a cell a metre away, at the equator of the way
+  float near_opacity = 0.0f;
+};
+
+// shells: 4, or 3, of which the first is then two in one.
+Cells cells_of(const Frame& frame, int shells) {
+  const FrameRain& rain = *frame.rain;
+  const FrameLayered& layered = rain.layered;
+  Cells c;
+  c.shells = shells;
+  if (shells < layered_shells) std::copy(layered_edges_m.begin() + 2, layered_edges_m.end(), c.edges_m.begin() + 1);
+  c.pixel_rad = 1.0f / frame.uniforms.lens.z;
+  c.turned = frame.camera.angular_velocity_radps * frame.camera.exposure_s;
+  c.turning = glm::length(c.turned) > 0.02f * c.pixel_rad;
+  c.streak_m = double(layered.speed_mps) * frame.camera.exposure_s;
+  // Cells hold a streak: before that gets tight every other drop fades, and then cells merge by twos.
+  constexpr double tight = 0.65, full = 0.85;
+  while (c.stretch < layered_stretches && c.streak_m > full * c.height_m) ++c.stretch, c.height_m *= 2.0;
+  c.odd_share = static_cast<float>(std::clamp((full - c.streak_m / c.height_m) / (full - tight), 0.0, 1.0));
+  // Streaks smeared aside by a turning camera need wider columns.
+  float wider = 1.0f;
+  while (wider < 4.0f && glm::length(c.turned) > 4.0f * c.pixel_rad * wider * wider) wider *= 2.0f;
+
+  c.drop = mean_drop(rain);
   const float share = rain.share(RainRung::composite), extinction = share * rain.drawn_extinction_per_m;
-  for (int i = 0; i < layered_shells; ++i) {
-    const float from = layered_edges_m[i], to = layered_edges_m[i + 1];
-    program.set(indexed("shells", i), glm::vec4(from, to, 1.0f - std::exp(-extinction * (to - from)),
-                                                share * static_cast<float>(drop.per_m3) * (to - from)));
-    // Two pixels at least; more where near drops are wider than that, and few.
-    const double wide = std::max(2.0 * pixel_rad, 2.5 * drop.diameter_m / from);
-    program.set(indexed("columns", i), columns_of(i == 0   ? std::max(wide, 8.0 * pixel_rad)
-                                                  : i == 1 ? std::max(wide, 4.0 * pixel_rad)
-                                                           : wide));
+  c.near_opacity = 1.0f - std::exp(-extinction * layered_edges_m[0]);
+  for (int i = 0; i < c.shells; ++i) {
+    const float from = c.edges_m[i], to = c.edges_m[i + 1];
+    c.opacity[i] = 1.0f - std::exp(-extinction * (to - from));
+    // Two pixels wide at least; the few near drops need more, where they are wider than that.
+    const float pixels = to < 2.0f ? 8.0f : to < 3.0f ? 4.0f : 2.0f;
+    c.columns[i] = columns_of(std::max(double(pixels * c.pixel_rad), 2.5 * c.drop.diameter_m / from)) / wider;
+    c.drops[i] = static_cast<float>(share * c.drop.per_m3 * (to - from) * c.height_m * 2.0 * M_PI / c.columns[i]);
+    // Where a cell has more than one drop, one stands for all with the deviation that they would have; 0.75: the square
+    // of the sine of a usual direction.
+    const float expected = c.drops[i] * 0.5f * (from + to) * 0.75f;
+    c.contrast[i] = std::min(1.0f, std::sqrt(0.5f * (1.0f + c.odd_share) / std::max(expected, 1e-9f)));
   }
-  program.set("drop_m", static_cast<float>(drop.diameter_m));
-  program.set("near_depth", extinction);
+  return c;
 }
 
-void set_motion(const Program& program, const Frame& frame, float pixel_rad) {
+void set_cells(const Program& program, const Frame& frame, const Cells& c) {
   const FrameLayered& layered = frame.rain->layered;
-  const double exposure_s = frame.camera.exposure_s, streak_m = layered.speed_mps * exposure_s;
   program.set("way", layered.turn * glm::vec3(0.0f, -1.0f, 0.0f));
   program.set("side", layered.turn * glm::vec3(1.0f, 0.0f, 0.0f));
   program.set("across", layered.turn * glm::vec3(0.0f, 0.0f, 1.0f));
-  program.set("streak_m", static_cast<float>(streak_m));
-  const glm::vec3 turned = frame.camera.angular_velocity_radps * static_cast<float>(exposure_s);
-  program.set("turned", turned);
-  // Cells hold a streak: before that gets tight every other drop fades, and then cells merge by twos.
-  constexpr double tight = 0.65, full = 0.85;
-  int stretch = 0;
-  while (stretch < layered_stretches && streak_m > full * layered_cell_m * (1 << stretch)) ++stretch;
-  const double cell_m = layered_cell_m * (1 << stretch), filled = streak_m / cell_m;
-  program.set("stretch", stretch);
-  program.set("cell_m", static_cast<float>(cell_m));
-  program.set("odd_share", static_cast<float>(std::clamp((full - filled) / (full - tight), 0.0, 1.0)));
-  for (int level = 0; level < layered_levels; ++level)
-    program.set(indexed("travelled", level), static_cast<float>(std::fmod(layered.travelled_m / (cell_m * (1 << level)),
-                                                                          double(layered_placement))));
-  // Streaks smeared aside by a turning camera need wider columns.
-  int turn_level = 0;
-  while (turn_level < 2 && glm::length(turned) > 4.0f * pixel_rad * static_cast<float>(1 << (2 * turn_level)))
-    ++turn_level;
-  program.set("turn_level", turn_level);
+  program.set("streak_cells", static_cast<float>(c.streak_m / c.height_m));
+  constexpr double repeats = double(layered_placement) * (1 << (layered_levels - 1));
+  program.set("travelled", static_cast<float>(std::fmod(layered.travelled_m / c.height_m, repeats)));
+  program.set("per_cell", static_cast<float>(1.0 / c.height_m));
+  program.set("odd_share", c.odd_share);
+  program.set("stretch", unsigned(c.stretch));
+  program.set("pixel_rad", c.pixel_rad);
+  program.set("drop_m", static_cast<float>(c.drop.diameter_m));
+  program.set("turned", c.turned);
+  program.set("salt", frame.rain->seed * 0x9e3779b9u);
+  program.set("shell_count", c.shells);
+  for (int i = 0; i < c.shells; ++i) {
+    const float from = c.edges_m[i], to = c.edges_m[i + 1];
+    program.set(indexed("shells", i), glm::vec4(from, to - from, c.opacity[i] * c.contrast[i], c.drops[i]));
+    program.set(indexed("columns", i), c.columns[i]);
+  }
 }
 
-// Lamplight of the shells' means, for what is too fine to be drawn singly.
-void fill_shell_light(LayeredGpu& gpu, PassContext& context) {
-  const Texture& volume = context.texture("rain_light");
-  if (gpu.shell_light.width != volume.width || gpu.shell_light.height != volume.height)
-    gpu.shell_light = make_texture_2d_array(volume.width, volume.height, layered_shells, GL_RGBA16F);
-  const Program& program = context.program("shell_light");
+void hold(Texture& texture, int width, int height, int layers, GLenum format) {
+  if (texture.width == width && texture.height == height) return;
+  texture = layers > 1 ? make_texture_2d_array(width, height, layers, format) : make_texture_2d(width, height, format);
+}
+
+// What changes slowly over the picture, on coarse grids: the drops' light, the haze, shelter.
+void fill_shells(LayeredGpu& gpu, PassContext& context, const Cells& cells) {
+  const Frame& frame = context.frame;
+  const bool environment = context.has("environment"), shelter = context.has("occlusion_map"),
+             lamps = context.has("rain_light") && frame.uniforms.counts.x > 0;
+  const int width = (context.width + 15) / 16, height = (context.height + 15) / 16;
+  const auto set_edges = [&](const Program& program) {
+    program.set("shell_count", cells.shells);
+    for (int i = 0; i <= cells.shells; ++i) program.set(indexed("edges", i), cells.edges_m[i]);
+  };
+  hold(gpu.drop_light, width, height, layered_shells * LAYERED_PARTS, GL_RGBA16F);
+  hold(gpu.haze, width, height, layered_shells + 1, GL_RGBA16F);
+  if (shelter) {
+    hold(gpu.open_share, (context.width + 7) / 8, (context.height + 7) / 8, 1, GL_RGBA8);
+    const Program& program = context.program("shelter");
+    program.use();
+    set_rays(program, frame.uniforms, 1, 1);
+    set_edges(program);
+    context.bind_texture(OCCLUSION_UNIT, "occlusion_map");
+    glBindImageTexture(0, gpu.open_share.id, 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RGBA8);
+    program.dispatch(gpu.open_share.width, gpu.open_share.height);
+  }
+  const Program& program = context.program(environment ? "light_environment" : "light");
   program.use();
-  context.bind_texture(14, "rain_light");
-  for (int i = 0; i <= layered_shells; ++i) program.set(indexed("edges", i), layered_edges_m[i]);
-  glBindImageTexture(0, gpu.shell_light.id, 0, GL_TRUE, 0, GL_WRITE_ONLY, GL_RGBA16F);
-  program.dispatch(volume.width, volume.height, layered_shells);
+  set_rain_ambient(*gpu.optics, program);
+  set_rays(program, frame.uniforms, 1, 1);
+  set_edges(program);
+  program.set("use_lamps", int(lamps));
+  program.set("use_shelter", int(shelter));
+  for (int i = 0; i < cells.shells; ++i)
+    program.set(indexed("opacities", i), cells.opacity[i] * (1.0f - cells.contrast[i]));
+  program.set("near_opacity", cells.near_opacity);
+  if (environment) context.bind_texture(7, "environment");
+  if (lamps) context.bind_texture(14, "rain_light");
+  glBindImageTexture(0, gpu.drop_light.id, 0, GL_TRUE, 0, GL_WRITE_ONLY, GL_RGBA16F);
+  glBindImageTexture(1, gpu.haze.id, 0, GL_TRUE, 0, GL_WRITE_ONLY, GL_RGBA16F);
+  program.dispatch(width, height);
   glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
 }
 
 void draw(LayeredGpu& gpu, PassContext& context) {
   const Frame& frame = context.frame;
-  make_textures(gpu);
+  int shells = static_cast<int>(context.parameter("shells"));
+  if (shells != 3 && shells != layered_shells) shells = is_software_gl() ? 3 : layered_shells;
+  const Cells cells = cells_of(frame, shells);
+  make_textures(gpu, cells.stretch);
   bind_rain_optics(*gpu.optics, frame);
-  const bool scene = context.has("depth"), environment = context.has("environment"),
-             lamps = context.has("rain_light") && frame.uniforms.counts.x > 0;
-  if (lamps) fill_shell_light(gpu, context);
+  fill_shells(gpu, context, cells);
+  // Drops nearer than a metre show the world in them where they are a pixel wide.
+  const bool scene = context.has("depth"),
+             normals = context.has("environment") && cells.drop.diameter_m > cells.pixel_rad * layered_edges_m[0];
   std::string name = "layers";
-  if (scene) name += "_scene";
-  if (environment) name += "_environment";
-  if (lamps) name += "_lamps";
+  if (normals) name += "_normals";
+  if (cells.turning) name += "_turning";
   const Program& program = context.program(name);
   program.use();
-  const float pixel_rad = 1.0f / frame.uniforms.lens.z;
-  set_rain_ambient(*gpu.optics, program);
-  set_rays(program, context);
-  set_artist(program, frame.rain->layered, frame.uniforms.lens.w);
-  set_shells(program, *frame.rain, pixel_rad);
-  set_motion(program, frame, pixel_rad);
-  program.set("pixel_rad", pixel_rad);
-  program.set("salt", frame.rain->seed * 0x9e3779b9u);
-  program.set("use_occlusion", int(context.has("occlusion_map")));
+  set_rays(program, frame.uniforms, context.width, context.height);
+  set_artist(program, frame.rain->layered);
+  set_cells(program, frame, cells);
+  program.set("use_open_share", int(context.has("occlusion_map")));
+  program.set("use_depth", int(scene));
   if (scene) context.bind_texture(0, "depth");
   glBindTextureUnit(1, gpu.placement.id);
-  if (lamps) glBindTextureUnit(2, gpu.shell_light.id);
+  glBindTextureUnit(2, gpu.drop_light.id);
   glBindTextureUnit(3, gpu.normals.id);
-  if (environment) context.bind_texture(7, "environment");
-  if (lamps) context.bind_texture(14, "rain_light");
-  if (context.has("occlusion_map")) context.bind_texture(OCCLUSION_UNIT, "occlusion_map");
+  glBindTextureUnit(4, gpu.haze.id);
+  if (context.has("occlusion_map")) glBindTextureUnit(5, gpu.open_share.id);
+  if (normals) context.bind_texture(7, "environment");
   context.bind_image(0, "colour", GL_READ_WRITE);
   program.dispatch(context.width, context.height);
 }
@@ -192,18 +260,17 @@ std::vector<PassOffer> layered_passes(std::shared_ptr<RainOptics> optics) {
                  {"occlusion_map", SlotAccess::read, true},
                  {"environment", SlotAccess::read, true},
                  {"rain_light", SlotAccess::read, true}};
+  // shells: of rain, 3 or 4; 0: by the device.
+  offer.parameters = {{"shells", 0.0}};
   const std::string folder = "systems/rainfall/layered/";
-  for (const bool scene : {false, true})
-    for (const bool environment : {false, true})
-      for (const bool lamps : {false, true}) {
-        std::vector<std::string> defines;
-        std::string name = "layers";
-        if (scene) defines.push_back("SCENE"), name += "_scene";
-        if (environment) defines.push_back("ENVIRONMENT"), name += "_environment";
-        if (lamps) defines.push_back("LAMPS"), name += "_lamps";
-        offer.shaders[name] = {{folder + "layered_composite.comp.glsl"}, defines};
-      }
-  offer.shaders["shell_light"] = {{folder + "shell_light.comp.glsl"}, {}};
+  const std::string layers = folder + "layered_composite.comp.glsl", light = folder + "shell_light.comp.glsl";
+  offer.shaders = {{"layers", {{layers}, {}}},
+                   {"layers_normals", {{layers}, {"NORMALS"}}},
+                   {"layers_turning", {{layers}, {"TURNING"}}},
+                   {"layers_normals_turning", {{layers}, {"NORMALS", "TURNING"}}},
+                   {"light", {{light}, {}}},
+                   {"light_environment", {{light}, {"ENVIRONMENT"}}}};
+  offer.shaders["shelter"] = {{folder + "shell_shelter.comp.glsl"}, {}};
   offer.wanted = wanted;
   offer.execute = [gpu](PassContext& context) { draw(*gpu, context); };
   return {offer};

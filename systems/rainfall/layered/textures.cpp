@@ -25,6 +25,20 @@ std::vector<std::array<std::uint8_t, 4>> make_placement() {
   return texels;
 }
 
+std::vector<std::array<std::uint32_t, 2>> pair_placement(const std::vector<std::array<std::uint8_t, 4>>& texels,
+                                                         int stretch) {
+  constexpr std::size_t size = layered_placement;
+  std::vector<std::array<std::uint32_t, 2>> pairs(texels.size());
+  for (std::size_t y = 0; y < size; ++y)
+    for (std::size_t x = 0; x < size; ++x)
+      for (std::size_t i = 0; i < 2; ++i) {
+        const auto& t = texels[(((y + i) << stretch) % size) * size + x];
+        pairs[y * size + x][i] =
+            t[0] | std::uint32_t{t[1]} << 8 | std::uint32_t(t[2] >> stretch) << 16 | std::uint32_t{t[3]} << 24;
+      }
+  return pairs;
+}
+
 std::vector<std::array<std::int8_t, 4>> make_drop_normals(int size, int drops) {
   std::vector<std::array<std::int8_t, 4>> texels(std::size_t(size) * size * drops);
   RandomStream random(0x64726f70u);

@@ -21,9 +21,9 @@ TEST_F(LayeredTest, MeanTransmittanceIsThatOfFogAtEveryDistanceAndRate) {
       }
       // The issue asks for 0.5% of the background. Most of what rain takes at a few metres is less than that: so also
       // within 8% of what it takes, which the drops of six frames may stray by, and the picture's half floats, which
-      // llvmpipe cuts off: 2^-12 on average in each of two passes.
+      // llvmpipe cuts off: 2^-11 in each of two passes.
       EXPECT_NEAR(sum, truth, 0.005) << wall_m << " m, " << rate << " mm/h";
-      EXPECT_NEAR(1.0 - sum, 1.0 - truth, 0.08 * (1.0 - truth) + 5e-4) << wall_m << " m, " << rate << " mm/h";
+      EXPECT_NEAR(1.0 - sum, 1.0 - truth, 0.08 * (1.0 - truth) + 1e-3) << wall_m << " m, " << rate << " mm/h";
     }
   }
 }
