@@ -1,6 +1,6 @@
 #pragma once
-// The sums that drops are drawn into by integer atomics (raster.glsl): optical depth and radiance of each pixel. Whoever
-// draws single drops adds to them, pass rain_composite lays them over the picture and leaves them at zero.
+// The sums that drops are drawn into by integer atomics (raster.glsl): optical depth and radiance of each pixel.
+// Whoever draws single drops adds to them, pass rain_composite lays them over the picture and leaves them at zero.
 
 #include "engine/gpu/objects.hpp"
 
