@@ -101,6 +101,8 @@ std::vector<Schema> make_schemas() {
            field<&Snowfall::maximum_flakes>("maximum_flakes", "", {0, 400000000},
                                             "Budget of flakes; 0: what the device affords."),
            field<&Snowfall::sway>("sway", "", {0, 10}, "Multiplies the flakes' sway; 1 is natural."),
+           field<&Snowfall::cone_jitter>("cone_jitter", "", {0, 10},
+                                         "Of snow=double_cone: multiplies its textures' sway; 0 is as printed."),
            field<&Snowfall::seed>("seed", "", {0, 4294967295.0}, "Which snow of all possible snows.")}),
       schema<Wind>("wind", "Mean wind and gusts.",
                    {field<&Wind::velocity_mps>("velocity_mps", "m/s", {-80, 80}, "Mean wind."),

@@ -54,6 +54,7 @@ struct Snowfall {
   float drawn_distance_m = 25.0f;
   std::int32_t maximum_flakes = 0;  // 0: what the device affords
   float sway = 1.0f;                // multiplies the flakes' sway
+  float cone_jitter = 1.0f;         // of snow=double_cone: multiplies its textures' sway; 0: as printed
   std::uint32_t seed = 1;
 };
 

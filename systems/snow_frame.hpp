@@ -41,8 +41,9 @@ struct FrameSnow {
   float extinction_per_m = 0.0f;      // geometric, of all flakes; all classes are drawn
   glm::vec3 mean_velocity_mps{0.0f};  // mass-weighted: the direction of the occlusion map where it does not rain
   std::vector<SnowClass> classes;
-  Techniques techniques;  // of the frame; see share()
-  FrameCone cone;         // of pass snow_cone; far_m is where its snow ends and haze begins
+  Techniques techniques;       // of the frame; see share()
+  float cone_jitter_m = 0.0f;  // how far pass snow_cone's textures sway
+  FrameCone cone;              // of pass snow_cone; far_m is where its snow ends and haze begins
   float share(SnowRung rung) const { return techniques.share(Effect::snow, rung); }
   // Out to where each technique draws; update_onsets fills them. With the haze's own they sum to extinction_per_m.
   float fog_extinction_per_m = 0.0f;

@@ -19,6 +19,7 @@
 #include "systems/rainfall/near_drops/near.hpp"
 #include "systems/rainfall/passes.hpp"
 #include "systems/rainfall/streaks/chart.hpp"
+#include "systems/rainfall/snow/chart.hpp"
 #include "systems/rainfall/snow/extract.hpp"
 #include "systems/rainfall/sprites/sprites.hpp"
 #include "systems/scene/propagate.hpp"
@@ -202,6 +203,7 @@ Result<void> chart_shelter(const ChartRun& run) {
 std::vector<ChartOffer> all_charts() {
   return {
       {"rainfall", "all ways to draw falling rain, in three scenes", chart_rainfall},
+      {"snow", "ways to draw falling snow, light and heavy", chart_snow},
       {"classes", "how many size classes of drops are enough", chart_classes},
       {"occlusion", "maps of shelter against rays, on a street of awnings and in the town", chart_shelter},
       {"streaks", "size of the streak table against its error, and what nearest-four reading costs", chart_streaks},

@@ -157,6 +157,7 @@ Result<std::unique_ptr<Studio>> Studio::make(bool software, const StudioScene& s
   set.wall_cd_m2 = scene.wall_cd_m2;
   set.wall_distance_m = scene.wall_distance_m;
   set.wall_hides = true;
+  set.flakes = scene.snow_mm_per_hour > 0.0f;
   auto stage = RainStage::make(software, set);
   if (!stage) return tl::unexpected(stage.error());
   studio->stage_ = std::move(*stage);
@@ -169,6 +170,9 @@ Studio::Cast Studio::cast() const {
   cast.emitter.rain_mm_per_hour = scene_.rain_mm_per_hour;
   cast.emitter.drawn_distance_m = 25.0f;
   cast.emitter.maximum_drops = 400'000'000;
+  cast.snowfall.snow_mm_per_hour = scene_.snow_mm_per_hour;
+  cast.snowfall.drawn_distance_m = 25.0f;
+  cast.snowfall.maximum_flakes = 400'000'000;
   return cast;
 }
 
@@ -184,6 +188,7 @@ void Studio::begin(const Cast& cast) {
   registry_.emplace<DoubleCone>(weather_, cast.cone);
   registry_.emplace<LayeredComposite>(weather_, cast.layered);
   registry_.emplace<StreakSprites>(weather_, cast.sprites);
+  registry_.emplace<Snowfall>(weather_, cast.snowfall);
   camera_ = registry_.create();
   Camera camera;
   camera.vertical_fov_deg = 30.0f;

@@ -19,6 +19,7 @@ struct StudioScene {
   std::string name;   // "night"
   std::string title;  // "night lamps, 10 mm/h"
   float rain_mm_per_hour = 10.0f;
+  float snow_mm_per_hour = 0.0f;
   Wind wind;
   glm::vec3 camera_velocity_mps{0.0f};
   glm::vec3 wall_cd_m2{0.6f};
@@ -63,6 +64,7 @@ class Studio {
     DoubleCone cone;
     LayeredComposite layered;
     StreakSprites sprites;
+    Snowfall snowfall;  // its rate is the scene's
   };
   void begin(const Cast&);
   Cast cast() const;  // of the scene's rate, all as by default

@@ -18,6 +18,12 @@ uniform vec3 fall;
 #include "systems/rainfall/light_volume.glsl"
 uniform vec4 nearer_slice, farther_slice;  // of the light volume, of each half of the layers' shells
 #endif
+#ifdef SNOW
+// Wang and Wade: "light snow should jitter as it falls". Flakes sway sideways, in waves that go through the textures.
+uniform vec4 jitter;        // tiles across
+uniform vec4 jitter_waves;  // a tile
+uniform vec2 jitter_turns;  // of two waves, now
+#endif
 #define ROWS 8
 
 layout(rgba16f, binding = 0) uniform image2D colour;
@@ -106,6 +112,10 @@ void main() {
     // Opacity of each layer over its mean. No two columns of tiles are level, or eyes would find the pattern.
     vec4 u = tiles * azimuth + shear * g;
     vec4 v = along * g - phase + 0.618034 * floor(u);
+#ifdef SNOW
+    u += jitter * (0.6 * sin(6.2831853 * (jitter_turns.x + jitter_waves * (u + v))) +
+                   0.4 * sin(6.2831853 * (jitter_turns.y + jitter_waves * (2.0 * v - u))));
+#endif
     vec4 pattern = vec4(dot(textureLod(first_streaks, vec3(u.x, v.x, 0.0), detail.x), first_weights[0]),
                         dot(textureLod(first_streaks, vec3(u.y, v.y, 1.0), detail.y), first_weights[1]),
                         dot(textureLod(first_streaks, vec3(u.z, v.z, 2.0), detail.z), first_weights[2]),

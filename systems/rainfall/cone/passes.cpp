@@ -126,8 +126,10 @@ void set_layers(ConeGpu& gpu, const PassContext& context, const Program& program
     const auto around = static_cast<float>(l.tiles_around / (2.0 * M_PI));
     const float texel_u = sine / (around * cone_texture_size);
     const float texel_v = sine * tile * cone.elongation[i] / (radius * cone_texture_size);
-    float lod = std::clamp(std::max(std::log2(pixel_rad / texel_u), std::log2(pixel_rad / texel_v) - 1.0f), 0.0f,
-                           cone_texture_levels - 1.01f);
+    // A level finer than filters would have it: blurred streaks would deviate half as much as rain does, and what
+    // twinkles is rain.
+    float lod = std::max(std::log2(pixel_rad / texel_u), std::log2(pixel_rad / texel_v) - 1.0f) - 1.0f;
+    lod = std::clamp(lod, 0.0f, cone_texture_levels - 1.01f);
     // Between two levels software OpenGL reads twice as many texels.
     if (software) lod = std::round(lod);
     tiles[i] = around;
@@ -162,6 +164,20 @@ void set_layers(ConeGpu& gpu, const PassContext& context, const Program& program
   program.set("nearer_slice", nearer_slice);
   program.set("farther_slice", farther_slice);
   program.set("extinction", extinction);
+  if (p.snow) {
+    // Waves so long that flakes next to each other do not change places: the textures would fold.
+    const FrameSnow& snow = *frame.snow;
+    glm::vec4 jitter, waves;
+    for (int i = 0; i < cone_layers; ++i) {
+      jitter[i] = cone.published ? 0.0f : snow.cone_jitter_m * tiles[i] / static_cast<float>(cone_layout(flakes)[i].radius_m);
+      waves[i] = std::max(1.0f, std::floor(0.08f / std::max(jitter[i], 1e-3f)));
+    }
+    program.set("jitter", jitter);
+    program.set("jitter_waves", waves);
+    // 70/64 and 115/64 Hz, within the sway's 0.5 to 3: the clock wraps at 64 s without a jump.
+    const glm::vec2 turns = snow.clock_s * glm::vec2(70.0f, 115.0f) / static_cast<float>(snow_clock_s);
+    program.set("jitter_turns", turns - glm::floor(turns));
+  }
   program.set("cone", glm::vec3(static_cast<float>(cone_slope), cone.apex_fade, cone.published ? 1.0f : 0.0f));
 }
 

@@ -75,6 +75,13 @@ FrameSnow make_frame_snow(const Snowfall& snowfall, const WindMotion& motion, co
   }
   snow.extinction_per_m = static_cast<float>(extinction);
   snow.mean_velocity_mps = water > 0.0 ? glm::vec3(momentum / water) : glm::vec3(0.0f, -1.0f, 0.0f);
+  // The mean radius of the helices (flake.glsl), of flakes weighted by what they cover.
+  constexpr double mean_radius_diameters = 3.586;
+  double covered = 0.0;
+  for (const FlakeClass& c : classes) covered += c.diameter_mm * petrichor::extinction_per_m(c);
+  if (extinction > 0.0)
+    snow.cone_jitter_m = static_cast<float>(snowfall.sway * snowfall.cone_jitter * mean_radius_diameters * 1e-3 *
+                                            covered / extinction);
   FrameRain field = flake_field(snow);
   fit_distance(field, camera, width, height);
   snow.fade_start_m = field.fade_start_m;
