@@ -10,8 +10,8 @@ namespace petrichor {
 namespace {
 
 constexpr std::size_t longest_recent = 180, longest_unevenness = 240;
-constexpr double drop_limit = 0.93;  // of the budget: what a choice is meant to fill at most
-constexpr double least_gain = 0.01;  // of visible error: for less nobody climbs
+constexpr double drop_limit = 0.93;   // of the budget: what a choice is meant to fill at most
+constexpr double least_gain = 0.004;  // of visible error: for less nobody climbs
 constexpr int wish_frames_needed = 8;
 constexpr double climb_after_s = 0.3, wish_needed_s = 0.2;
 constexpr double failed_within_s = 60.0, first_bar_s = 8.0, longest_bar_s = 600.0, proven_after_s = 120.0;

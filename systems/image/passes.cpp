@@ -114,7 +114,18 @@ Ladder antialias_ladder() {
   l.error_measure = "root mean square, without antialiasing: 1";
   l.rungs = {{"off", "edges as they fall on pixels", {"antialias"}, 0.0, 1.0},
              {"edges", "edges found in the finished picture are smoothed", {"antialias"}, 2.0, 0.5}};
-  l.coverage = [](const Frame&) { return 0.02; };  // pixels on edges
+  // Pixels on edges; what is enlarged has larger stairs.
+  l.coverage = [](const Frame& frame) {
+    constexpr double on_edges = 0.06;
+    switch (static_cast<ResolutionRung>(frame.techniques[Effect::resolution].rung)) {
+      case ResolutionRung::half:
+        return 4.0 * on_edges;
+      case ResolutionRung::two_thirds:
+        return 2.25 * on_edges;
+      default:
+        return on_edges;
+    }
+  };
   l.fades = false;
   return l;
 }

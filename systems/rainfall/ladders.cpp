@@ -23,8 +23,8 @@ Ladder rainfall_ladder() {
   l.error_measure = "mean and deviation over time of blocks of pixels; no rain at all: 1";
   l.rungs = {
       {"fog", "no single drops: their extinction and airlight alone", {}},
-      {"double_cone", "textures scrolled on a double cone about the camera (Wang and Wade 2004)", {"double_cone"}},
-      {"composite", "layers of drops from one placement texture (Tatarchuk and Isidoro 2006)", {"layered_composite"}},
+      {"double_cone", "textures scrolled on a double cone about the camera (Wang and Wade 2004)", {"rain_light", "double_cone"}},
+      {"composite", "layers of drops from one placement texture (Tatarchuk and Isidoro 2006)", {"rain_light", "layered_composite"}},
       {"sprites", "particles in a box about the camera, drawn as streaks (Tariq 2007)", {"rain_sprites", "rain_composite"}},
       {"drop_field", "every drop, singly as far as the budget of drops reaches", {"rain_cells", "rain_splat", "rain_composite"}},
       {"full_field",
@@ -46,7 +46,7 @@ Ladder snow_ladder() {
   l.truth = "every flake, the mean of 64 instants of the exposure";
   l.error_measure = "mean and deviation over time of blocks of pixels; no snow at all: 1";
   l.rungs = {{"fog", "no single flakes: their haze alone", {}},
-             {"double_cone", "textures of flakes scrolled on a double cone about the camera", {"snow_cone"}},
+             {"double_cone", "textures of flakes scrolled on a double cone about the camera", {"snow_light", "snow_cone"}},
              {"field", "every flake, swaying and tumbling", {"snow_cells", "snow_field", "snow_composite"}}};
   l.coverage = [](const Frame& frame) { return frame.snow && frame.snow->snow_mm_per_hour > 0.0f ? 1.0 : 0.0; };
   return l;

@@ -15,7 +15,7 @@ ParsedCommandLine parse(std::vector<std::string> words) {
 TEST(Options, RenderTakesEverything) {
   const auto parsed =
       parse({"render", "a.lua", "--size", "640x360", "--fps", "30", "--frames", "10:20", "--out", "f%04d.png", "--set",
-             "emitter.rain_mm_per_hour=50", "--set", "wind.gust_mps=2", "--seed", "9", "--stats", "s.json"});
+             "emitter.rain_mm_per_hour=50", "--set", "wind.gust_mps=2", "--seed", "9", "--stats", "s.json", "--budget", "66.5"});
   ASSERT_TRUE(parsed.options);
   const auto& render = std::get<RenderOptions>(*parsed.options);
   EXPECT_EQ(render.width, 640);
@@ -26,6 +26,13 @@ TEST(Options, RenderTakesEverything) {
   EXPECT_EQ(render.frames->end, 20);
   EXPECT_EQ(render.subject.sets.size(), 2u);
   EXPECT_EQ(render.subject.seed, 9u);
+  EXPECT_EQ(render.budget_ms, 66.5);
+}
+
+TEST(Options, WithoutABudgetTheDirectorRests) {
+  EXPECT_EQ(std::get<RenderOptions>(*parse({"render", "a.lua"}).options).budget_ms, 0.0);
+  EXPECT_EQ(std::get<PlayOptions>(*parse({"play"}).options).budget_ms, 0.0);
+  EXPECT_EQ(std::get<PlayOptions>(*parse({"play", "--budget", "16"}).options).budget_ms, 16.0);
 }
 
 TEST(Options, WrongCallsExitWithTwo) {
@@ -42,6 +49,8 @@ TEST(Options, WrongCallsExitWithTwo) {
                                              {"render", "a.lua", "--fps", "0"},
                                              {"render", "a.lua", "--fps", "nan"},
                                              {"render", "a.lua", "--fps", "ten"},
+                                             {"render", "a.lua", "--budget", "0"},
+                                             {"play", "--budget", "nan"},
                                              {"render", "a.lua", "--nonsense"},
                                              {"measure"},
                                              {"measure", "rain", "--rate", "-1"},

@@ -89,5 +89,22 @@ TEST_F(Inspecting, ErrorsAndTimesAreShown) {
   EXPECT_GT(ImGui::GetDrawData()->TotalVtxCount, 500);
 }
 
+TEST_F(Inspecting, TheDirectorsChoicesAreShownBeneathTheTimes) {
+  InterfaceState state;
+  state.show_times = true;
+  OverlayInfo info;
+  const auto vertices = [&] {
+    for (int i = 0; i < 3; ++i) frame([&] { draw_windows(state, info, registry, component_schemas()); });
+    return ImGui::GetDrawData()->TotalVtxCount;
+  };
+  const int without = vertices();
+  info.director.push_back({"rainfall", "double_cone", 4.0, 0.6, 1.0, 2, "drop_field would need 18.2 ms, 6.1 are left"});
+  const int one = vertices();
+  info.director.push_back(info.director.front());
+  const int two = vertices();
+  EXPECT_GT(one, without + 200);
+  EXPECT_GT(two, one + 200);
+}
+
 }  // namespace
 }  // namespace petrichor
