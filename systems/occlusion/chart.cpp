@@ -7,8 +7,10 @@
 #include <cmath>
 #include <random>
 
+#include "engine/core/bench_row.hpp"
 #include "engine/core/log.hpp"
 #include "engine/core/paths.hpp"
+#include "systems/occlusion/section.hpp"
 #include "systems/occlusion/stage.hpp"
 #include "systems/occlusion/street.hpp"
 
@@ -64,7 +66,6 @@ struct Measured {
   std::vector<double> shelter, deposit;  // a case each: root mean square error
   double drops = 0.0;                    // share of single drops misjudged
   double redraws_per_s = 0.0;
-  ShelterCost cost;
 };
 
 struct Weather {
@@ -102,13 +103,15 @@ double misjudged_drops(OcclusionStage& stage, const ShelterRays& rays, const std
   return wrong / all;
 }
 
+Result<void> load(OcclusionStage& stage, const Setting& setting, int texels) {
+  stage.frame.techniques.set(Effect::occlusion, setting.rung);
+  return stage.load(texels, setting.rung == OcclusionRung::jittered ? setting.maps : 1,
+                    {{"maps", static_cast<double>(setting.maps)}});
+}
+
 Result<Measured> measure(OcclusionStage& stage, const Setting& setting, const Weather& weather, const ShelterRays& rays,
                          const std::vector<Case>& cases, int texels) {
-  if (auto loaded = stage.load(texels, setting.rung == OcclusionRung::jittered ? setting.maps : 1,
-                               {{"maps", static_cast<double>(setting.maps)}});
-      !loaded)
-    return tl::unexpected(loaded.error());
-  stage.frame.techniques.set(Effect::occlusion, setting.rung);
+  if (auto loaded = load(stage, setting, texels); !loaded) return tl::unexpected(loaded.error());
   Measured m;
   for (const Case& c : cases) {
     std::vector<double> shelter, deposit;
@@ -136,9 +139,6 @@ Result<Measured> measure(OcclusionStage& stage, const Setting& setting, const We
     if (auto asked = stage.ask({cases.front().places.front()}); !asked) return tl::unexpected(asked.error());
     if (i > 0) m.redraws_per_s += stage.redrawn() * 30.0 / (frames - 1);
   }
-  auto cost = stage.time(cases.front().places, 9);
-  if (!cost) return tl::unexpected(cost.error());
-  m.cost = *cost;
   return m;
 }
 
@@ -165,12 +165,11 @@ Result<void> chart_scene(const ChartRun& run, OcclusionStage& stage, const Weath
     ChartPoint p;
     p.rung = s.name;
     p.label = s.label;
-    p.ms = p.ms_p5 = p.ms_p95 = m->cost.maps_ms;
     p.error = m->shelter.front();
-    p.more = {{"maps", s.maps},
-              {"ns_per_place", m->cost.query_ns},
-              {"redraws_per_s", m->redraws_per_s},
-              {"drops_misjudged", m->drops}};
+    // Straight down is wrong in any wind: TheVerticalMapFailsAsTheWindRises.
+    p.stable = s.rung != OcclusionRung::vertical;
+    p.more = {
+        {"maps", s.maps}, {"ns_per_place", 0.0}, {"redraws_per_s", m->redraws_per_s}, {"drops_misjudged", m->drops}};
     for (std::size_t i = 0; i < cases.size(); ++i) {
       p.more.emplace_back("shelter_" + cases[i].name, m->shelter[i]);
       p.more.emplace_back("deposit_" + cases[i].name, m->deposit[i]);
@@ -178,6 +177,24 @@ Result<void> chart_scene(const ChartRun& run, OcclusionStage& stage, const Weath
     chart.points.push_back(std::move(p));
     done += (to - from) / static_cast<double>(settings().size());
     if (run.progress) run.progress(done);
+  }
+  // By turns, so that whatever else the machine does falls on all alike.
+  std::vector<std::vector<double>> maps(settings().size()), queries(settings().size());
+  for (int round = 0; round < 5; ++round) {
+    for (std::size_t i = 0; i < settings().size(); ++i) {
+      if (auto loaded = load(stage, settings()[i], chart.width); !loaded) return loaded;
+      const auto cost = stage.time(cases.front().places, 3);
+      if (!cost) return tl::unexpected(cost.error());
+      maps[i].insert(maps[i].end(), cost->maps_ms.begin(), cost->maps_ms.end());
+      queries[i].insert(queries[i].end(), cost->query_ns.begin(), cost->query_ns.end());
+    }
+  }
+  for (std::size_t i = 0; i < chart.points.size(); ++i) {
+    ChartPoint& p = chart.points[i];
+    p.ms = quantile(maps[i], 0.5);
+    p.ms_p5 = quantile(maps[i], 0.05);
+    p.ms_p95 = quantile(maps[i], 0.95);
+    p.more[1].second = quantile(queries[i], 0.5);
   }
   return write_chart(run.folder, chart);
 }
@@ -240,6 +257,9 @@ Result<void> chart_occlusion(const ChartRun& run, const RainAt& rain_at) {
                                 "Shelter under a roof at 3 m, rain of 10 mm/h in 5 m/s of wind with gusts", 0.0, 0.5);
         !done)
       return done;
+    weather.set(stage.frame, times_s.front());
+    const auto falls = falls_over_time(rain_at, weather.emitter, weather.wind, 12);
+    if (auto drawn = draw_shelter_section(run, stage, falls); !drawn) return drawn;
   }
   const auto file = find_data("content/city.glb");
   if (!file) {

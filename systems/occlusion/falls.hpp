@@ -16,8 +16,8 @@ struct FallShare {
 };
 
 // What falls at all: rain, snow or both, weighted by their water. Straight down where nothing falls. In frame.wind's
-// mean, where it is known: a map that followed every gust was redrawn six times a second (75 ms each in the town, software
-// OpenGL) and judged no more drops rightly.
+// mean, where it is known: a map that followed every gust was redrawn six times a second (75 ms each in the town,
+// software OpenGL) and judged no more drops rightly.
 glm::vec3 mean_fall(const Frame&);
 bool precipitates(const Frame&);
 

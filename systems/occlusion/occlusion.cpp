@@ -200,6 +200,10 @@ Ladder occlusion_ladder() {
              {"tilted", "one map, seen along the mean fall", {"occlusion_map"}},
              {"jittered", "several maps, seen along the falls of drops of all sizes and of gusts", {"occlusion_map"}}};
   l.coverage = [](const Frame& frame) { return precipitates(frame) ? 0.2 : 0.0; };
+  // Errors of the chart `occlusion`, relative to no shelter at all (0.40). Costs are those of a redraw, which a frame
+  // seldom pays.
+  for (std::size_t i = 0; i < l.rungs.size(); ++i) l.rungs[i].chart_error = std::array{1.2, 0.4, 0.1}[i];
+  l.rungs[0].stable = false;  // in any wind
   l.directed = false;
   return l;
 }

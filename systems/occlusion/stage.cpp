@@ -15,11 +15,6 @@ double now_ms() {
   return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-double median(std::vector<double> values) {
-  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2), values.end());
-  return values[values.size() / 2];
-}
-
 }  // namespace
 
 std::uint32_t OcclusionStage::add(std::shared_ptr<const Model> model) {
@@ -116,15 +111,14 @@ Result<std::vector<ShelterAnswer>> OcclusionStage::ask(const std::vector<Shelter
 
 Result<ShelterCost> OcclusionStage::time(const std::vector<ShelterQuestion>& questions, int repeats) {
   if (auto warm = ask(questions); !warm) return tl::unexpected(warm.error());
-  std::vector<double> maps, queries;
+  ShelterCost cost;
   for (int i = 0; i < repeats; ++i) {
     ++frame.geometry_version;
     if (auto drawn = draw(); !drawn) return tl::unexpected(drawn.error());
-    maps.push_back(maps_ms_);
-    queries.push_back(query_ms_);
+    cost.maps_ms.push_back(maps_ms_);
+    cost.query_ns.push_back(1e6 * query_ms_ / static_cast<double>(std::max<std::size_t>(questions.size(), 1)));
   }
-  return ShelterCost{median(maps),
-                     1e6 * median(queries) / static_cast<double>(std::max<std::size_t>(questions.size(), 1))};
+  return cost;
 }
 
 ShelterRays OcclusionStage::rays() const {

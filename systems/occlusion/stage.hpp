@@ -34,8 +34,8 @@ struct ShelterAnswer {
 };
 
 struct ShelterCost {
-  double maps_ms = 0.0;   // to redraw all maps of the frame
-  double query_ns = 0.0;  // of shelter(), sheltered() and deposit() together, a place
+  std::vector<double> maps_ms;   // to redraw all maps of the frame
+  std::vector<double> query_ns;  // of all that can be asked together, a place
 };
 
 class OcclusionStage {
@@ -50,7 +50,7 @@ class OcclusionStage {
   // Errors are those of the table and the shaders. Parameters are those of occlusion_map.
   Result<void> load(int texels, int layers, const std::map<std::string, double>& parameters = {});
   Result<std::vector<ShelterAnswer>> ask(const std::vector<ShelterQuestion>&);
-  // Draws the maps again with everything stale, `repeats` times: the median. Questions as in ask().
+  // Draws the maps again with everything stale, so many times. Questions as in ask().
   Result<ShelterCost> time(const std::vector<ShelterQuestion>&, int repeats);
   ShelterRays rays() const;
 
