@@ -106,6 +106,48 @@ TEST(DropClasses, KeepNumberWaterAndCrossSection) {
   }
 }
 
+// How many classes are drawn is a choice of speed against truth (chart `classes`), never of how much rain falls.
+TEST(DropClasses, AnyNumberOfThemCarriesTheSameWaterAndConverges) {
+  Emitter emitter;
+  emitter.rain_mm_per_hour = 10.0f;
+  struct Sums {
+    double water = 0, number = 0, extinction = 0, energy = 0, impacts = 0;
+  };
+  const auto sums = [&](int drawn) {
+    Sums s;
+    const auto classes = make_drop_classes(emitter, drawn);
+    int count = 0;
+    for (const DropClass& c : classes) {
+      s.water += rain_mm_per_hour(c);
+      if (!c.drawn) continue;
+      ++count;
+      s.number += c.drops_per_m3;
+      s.extinction += extinction_per_m(c);
+      s.energy += rain_mm_per_hour(c) * c.fall_speed_mps * c.fall_speed_mps;
+      s.impacts += c.drops_per_m3 * c.fall_speed_mps;
+    }
+    EXPECT_EQ(count, drawn);
+    return s;
+  };
+  const Sums truth = sums(256);
+  double before = 1e9;
+  for (const int drawn : {1, 2, 4, 8, 16, 32, 64}) {
+    const Sums s = sums(drawn);
+    EXPECT_NEAR(s.water, 10.0, 0.02) << drawn;
+    EXPECT_NEAR(s.number, truth.number, 0.002 * truth.number) << drawn;
+    const double error = std::abs(s.extinction / truth.extinction - 1) + std::abs(s.energy / truth.energy - 1) +
+                         std::abs(s.impacts / truth.impacts - 1);
+    // Second order in the width of a class once it is narrow: at least a third from one power of two to the next.
+    if (drawn >= 8) {
+      EXPECT_LT(error, 0.67 * before) << drawn;
+    }
+    before = error;
+  }
+  EXPECT_NEAR(sums(16).extinction, truth.extinction, 0.005 * truth.extinction);
+  EXPECT_NEAR(sums(16).energy, truth.energy, 0.005 * truth.energy);
+  EXPECT_NEAR(sums(16).impacts, truth.impacts, 0.005 * truth.impacts);
+}
+
 TEST(DropClasses, ExtinctionIsThatOfTheLiterature) {
   // Geometric, drops > 0.5 mm: 0.22, 0.62 and 1.90 per km at 2.5, 10 and 50 mm/h (physics, section 2).
   for (const auto& [rate, beta] : {std::pair{2.5, 0.22e-3}, {10.0, 0.62e-3}, {50.0, 1.90e-3}}) {
