@@ -85,6 +85,7 @@ std::vector<ViewLight> trace_view(const StreakBake& bake, double view_elevation,
     result[g].power.assign(nodes * states, 0.0);
     result[g].across.assign(nodes * bake.across, 0.0);
     result[g].area.assign(states, 0.0);
+    result[g].turns.assign(drop_phase_bins, 0.0);
   }
   const double c = std::cos(view_elevation), s = std::sin(view_elevation);
   const glm::dvec3 to_eye(c, s, 0.0), side(0.0, 0.0, 1.0), up(-s, c, 0.0);
@@ -112,6 +113,9 @@ std::vector<ViewLight> trace_view(const StreakBake& bake, double view_elevation,
         for (ViewLight& light : result) light.area[here] += ray_area;
         for (int p = 0; p < paths.count; ++p) {
           const glm::dvec3& l = paths.paths[p].direction;
+          const double sine = std::sqrt(std::clamp(0.5 + 0.5 * glm::dot(l, to_eye), 0.0, 1.0));
+          result.front().turns[std::min(static_cast<int>(sine * drop_phase_bins), drop_phase_bins - 1)] +=
+              paths.paths[p].share * ray_area;
           if (l.z < 0.0) continue;  // the mirror image, of a drop that leans the other way
           const double elevation = std::asin(std::clamp(l.y, -1.0, 1.0)), azimuth = std::atan2(l.z, l.x);
           const double power = paths.paths[p].share * ray_area;
@@ -138,8 +142,7 @@ std::vector<ViewLight> trace_view(const StreakBake& bake, double view_elevation,
   return result;
 }
 
-TentWeights tent_weights(double view_elevation, const LampGrid& grid) {
-  static const std::vector<float> phase = make_drop_phase();
+TentWeights tent_weights(double view_elevation, const LampGrid& grid, std::span<const float> phase) {
   TentWeights weights;
   weights.phase.assign(std::size_t(grid.light) * grid.azimuth, 0.0);
   weights.solid_angle = weights.phase;
@@ -206,6 +209,18 @@ StreakTable bake_streaks(const StreakBake& bake, const std::function<void(double
         parts[i] = trace_view(bake, elevation_of(i / bake.oscillations), std::span(&lamps, 1), o, o + 1);
       },
       progress);
+  // The drops' own phase function: over all views as often as random drops are seen from them.
+  std::vector<double> turns(drop_phase_bins, 0.0);
+  double seen = 0.0;
+  for (int i = 0; i < static_cast<int>(parts.size()); ++i) {
+    const double weight = std::cos(elevation_of(i / bake.oscillations));
+    seen += weight * bake.along;
+    for (int k = 0; k < drop_phase_bins; ++k) turns[k] += weight * parts[i].front().turns[k];
+  }
+  table.phase.resize(drop_phase_bins);
+  for (int k = 0; k < drop_phase_bins; ++k)  // over the solid angle of the bin, as in make_drop_phase()
+    table.phase[k] =
+        static_cast<float>(turns[k] / seen * drop_phase_bins * drop_phase_bins / (4.0 * pi * (2.0 * k + 1.0)));
   for (int view = 0; view < bake.grid.view; ++view) {
     ViewLight light = std::move(parts[std::size_t(view) * bake.oscillations].front());
     for (int o = 1; o < bake.oscillations; ++o) {
@@ -215,7 +230,7 @@ StreakTable bake_streaks(const StreakBake& bake, const std::function<void(double
     }
     join_poles(light.power, lamps, states);
     join_poles(light.across, lamps, bake.across);
-    const TentWeights weights = tent_weights(elevation_of(view), lamps);
+    const TentWeights weights = tent_weights(elevation_of(view), lamps, table.phase);
     for (std::size_t node = 0; node < nodes; ++node) {
       const std::size_t entry = view * nodes + node;
       double sum = 0.0, across = 0.0;

@@ -31,16 +31,17 @@ struct LampGrid {
 // irradiance; along is spread over the time the drop takes to fall by its own height.
 struct ViewLight {
   std::vector<double> power, across;
-  std::vector<double> area;  // of the drop's picture over that of the sphere's disc: oscillations x along
+  std::vector<double> area;   // of the drop's picture over that of the sphere's disc: oscillations x along
+  std::vector<double> turns;  // power by sin(turn / 2), drop_phase_bins, lamps on both sides; the sum over all moments
 };
 // One for each grid. Only those oscillations from `first` to `last` (excluded) are traced.
 std::vector<ViewLight> trace_view(const StreakBake&, double view_elevation, std::span<const LampGrid>, int first,
                                   int last);
-// Integrals of the same tents of the sphere's phase function, and of 1.
+// Integrals of the same tents of a phase function (as make_drop_phase()), and of 1.
 struct TentWeights {
   std::vector<double> phase, solid_angle;
 };
-TentWeights tent_weights(double view_elevation, const LampGrid&);
+TentWeights tent_weights(double view_elevation, const LampGrid&, std::span<const float> phase);
 // Where a ring of nodes stands for one direction, the zenith or the nadir: its mean to all of it. `width` values a
 // node.
 void join_poles(std::vector<double>& values, const LampGrid&, std::size_t width);

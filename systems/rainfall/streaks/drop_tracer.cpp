@@ -12,7 +12,7 @@ namespace {
 constexpr double n_water = water_refractive_index;
 constexpr double exact = 1e-9;        // radii
 constexpr int most_surfaces = 160;    // total reflections can go round and round
-constexpr double left_inside = 2e-3;  // of the ray's power, given up: a sphere keeps that after three reflections
+constexpr double left_inside = 5e-4;  // of the ray's power, given up
 
 // Stokes vector about a direction of travel, with the axis of positive q.
 struct Polarised {

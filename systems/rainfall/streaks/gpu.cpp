@@ -1,5 +1,6 @@
 #include "systems/rainfall/streaks/gpu.hpp"
 
+#include <cmath>
 #include <vector>
 
 #include "engine/core/paths.hpp"
@@ -30,10 +31,12 @@ StreakTableGpu upload_streak_table(const StreakTable& table) {
   for (int entry = 0; entry < entries; ++entry) {
     const auto first = table.profile.begin() + std::ptrdiff_t(entry) * table.across;
     profiles.insert(profiles.end(), first, first + table.across);
-    profiles.push_back(table.mean[entry]);
+    profiles.push_back(std::log(table.mean[entry]));
   }
   gpu.profiles = make_texture_2d_array(table.across + 1, 1, entries, GL_R32F);
   glTextureSubImage3D(gpu.profiles.id, 0, 0, 0, 0, table.across + 1, 1, entries, GL_RED, GL_FLOAT, profiles.data());
+  gpu.phase = make_texture_2d(static_cast<int>(table.phase.size()), 1, GL_R32F);
+  glTextureSubImage2D(gpu.phase.id, 0, 0, 0, gpu.phase.width, 1, GL_RED, GL_FLOAT, table.phase.data());
   return gpu;
 }
 
@@ -66,6 +69,7 @@ bool bind_streak_table(RainOptics& optics, const Frame& frame, const Program& pr
   const StreakTableGpu& table = *optics.streaks;
   glBindTextureUnit(13, table.modulations.id);
   glBindTextureUnit(12, table.profiles.id);
+  glBindTextureUnit(11, table.phase.id);
   program.set("streak_table_nodes",
               glm::vec4(table.grid.view, table.grid.light, table.grid.azimuth, nearest > all ? 1.0f : 2.0f));
   program.set("streak_table_size", glm::vec2(table.along, table.oscillations));

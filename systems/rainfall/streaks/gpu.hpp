@@ -12,7 +12,7 @@
 namespace petrichor {
 
 struct StreakTableGpu {
-  Texture modulations, profiles;
+  Texture modulations, profiles, phase;
   StreakGrid grid;
   int along = 0, oscillations = 0;
 };

@@ -5,10 +5,12 @@
 
 #define STREAK_TABLE_UNIT 13
 #define STREAK_PROFILE_UNIT 12
+#define STREAK_PHASE_UNIT 11
 // A layer an entry: along the streak by oscillation, both repeat.
 layout(binding = STREAK_TABLE_UNIT) uniform sampler2DArray streak_modulations;
-// A layer an entry: across the streak, and in the last texel the mean over the sphere's phase function.
+// A layer an entry: across the streak, and in the last texel the logarithm of the mean.
 layout(binding = STREAK_PROFILE_UNIT) uniform sampler2DArray streak_profiles;
+layout(binding = STREAK_PHASE_UNIT) uniform sampler2D streak_phases;  // of these drops, by sin(turn / 2)
 uniform vec4 streak_table_nodes;    // view, light, azimuth; w: 1 nearest four (Tariq 2007), 2 all angles
 uniform vec2 streak_table_size;     // texels along and oscillations
 uniform float streak_strength;      // 0: even streaks
@@ -85,9 +87,10 @@ float streak_across(vec3 angles, float across) {
   return mix(1.0, sum, streak_strength);
 }
 
-// The drop's mean over that of a sphere: radiance per irradiance is drop_phase() times this times the above.
-float streak_mean(vec3 angles) {
-  if (streak_strength == 0.0) return 1.0;
+// Mean radiance along the streak per irradiance, 1/sr: in the place of drop_phase(), which is a sphere's and which
+// even streaks have.
+float streak_phase(vec3 angles, float even) {
+  if (streak_strength == 0.0) return even;
   StreakEntries e = streak_entries(angles);
   int texel = textureSize(streak_profiles, 0).x - 1;
   float sum = 0.0;
@@ -96,7 +99,11 @@ float streak_mean(vec3 angles) {
     float entry = streak_entry(e, i, weight);
     if (weight > 0.0) sum += weight * texelFetch(streak_profiles, ivec3(texel, 0, int(entry)), 0).r;
   }
-  return mix(1.0, sum, streak_strength);
+  vec2 elevations = streak_table_nodes.w == 1.0 ? vec2(0.0, abs(angles.y)) : angles.xy;
+  float cosine = -(sin(elevations.x) * sin(elevations.y) + cos(elevations.x) * cos(elevations.y) * cos(angles.z));
+  int bins = textureSize(streak_phases, 0).x;
+  int bin = min(int(sqrt(max(0.5 - 0.5 * cosine, 0.0)) * float(bins)), bins - 1);
+  return mix(even, exp(sum) * texelFetch(streak_phases, ivec2(bin, 0), 0).r, streak_strength);
 }
 
 // Of a drop: bands per second of its fall, by Rayleigh's frequency of mode (2,0): 344 Hz at 1 mm.

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "systems/rainfall/drop_optics.hpp"
+
 namespace petrichor {
 namespace {
 
@@ -70,10 +72,13 @@ double streak_modulation(const StreakTable& t, const StreakAngles& angles, doubl
   return sum;
 }
 
-double streak_mean(const StreakTable& t, const StreakAngles& angles, bool nearest_four) {
+double streak_phase(const StreakTable& t, const StreakAngles& angles, bool nearest_four) {
   double sum = 0.0;
-  for (const Corner& c : corners_of(t.grid, angles, nearest_four)) sum += c.weight * t.mean[c.entry];
-  return sum;
+  for (const Corner& c : corners_of(t.grid, angles, nearest_four)) sum += c.weight * std::log(t.mean[c.entry]);
+  StreakAngles seen = angles;
+  if (nearest_four) seen.view_elevation = 0.0, seen.light_elevation = std::abs(seen.light_elevation);
+  const double sine = std::sqrt(std::clamp(0.5 - 0.5 * turn_cosine(seen), 0.0, 1.0));
+  return std::exp(sum) * t.phase[std::min(static_cast<int>(sine * drop_phase_bins), drop_phase_bins - 1)];
 }
 
 double streak_profile(const StreakTable& t, const StreakAngles& angles, double across, bool nearest_four) {

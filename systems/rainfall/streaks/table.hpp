@@ -8,9 +8,10 @@
 // the fall speed say how many a streak holds. Oscillation: by how many cycles mode (3,1) is ahead of twice mode (2,0),
 // 0 to 1; f3 is 1.936 f2, so over one cycle along it changes by -0.064. Both repeat.
 //
-// Radiance per irradiance, 1/sr = drop_phase(turn) * mean(angles) * modulation(angles, along, oscillation) *
-// profile(angles, across): drop_phase is the sphere's (drop_optics.hpp), so that only what differs from a sphere is
-// interpolated; modulation and profile have mean 1, the profile weighted by the disc's chord.
+// Radiance per irradiance, 1/sr = phase(turn) * mean(angles) * modulation(angles, along, oscillation) *
+// profile(angles, across). The phase function is that of make_drop_phase(), but of these drops, over all phases and all
+// views: so only what differs from it is interpolated, the mean by its logarithm, for it varies by factors. Modulation
+// and profile have mean 1, the profile weighted by the disc's chord.
 
 #include <glm/glm.hpp>
 #include <string>
@@ -43,6 +44,7 @@ struct StreakTable {
   std::vector<float> modulation;  // entries x oscillations x along
   std::vector<float> profile;     // entries x across: from the side away from the lamp to the lamp's side
   std::vector<float> mean;        // entries
+  std::vector<float> phase;       // drop_phase_bins, as make_drop_phase()
 };
 
 struct StreakAngles {
@@ -56,11 +58,12 @@ double turn_cosine(const StreakAngles&);  // 1 where the drop stands before the 
 // between the four nearest entries.
 double streak_modulation(const StreakTable&, const StreakAngles&, double along, double oscillation,
                          bool nearest_four = false);
-double streak_mean(const StreakTable&, const StreakAngles&, bool nearest_four = false);
+double streak_phase(const StreakTable&, const StreakAngles&, bool nearest_four = false);  // phase * mean, 1/sr
 double streak_profile(const StreakTable&, const StreakAngles&, double across, bool nearest_four = false);
 
-// OpenEXR through OpenImageIO, three images of floats, a row an entry: "modulation" (oscillations x along wide),
-// "profile" (across wide) and "mean" (one wide), with the angles, the drop and the amplitudes as attributes. Written
+// OpenEXR through OpenImageIO, images of floats, a row an entry: "modulation" (oscillations x along wide), "profile"
+// (across wide) and "mean" (one wide), with the angles, the drop and the amplitudes as attributes; and "phase", one row
+// of drop_phase_bins. Written
 // beside and renamed; errors name the file and say what to do.
 Result<void> write_streak_table(const std::string& file, const StreakTable&);
 Result<StreakTable> load_streak_table(const std::string& file);

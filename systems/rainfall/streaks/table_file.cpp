@@ -5,31 +5,37 @@
 #include <cmath>
 #include <filesystem>
 
+#include "systems/rainfall/drop_optics.hpp"
 #include "systems/rainfall/streaks/drop_shape.hpp"
 #include "systems/rainfall/streaks/table.hpp"
 
 namespace petrichor {
 namespace {
 
-constexpr int version = 1;
+constexpr int version = 2;
 constexpr const char* advice = "bake it anew: petrichor bake streaks --out FILE.exr";
 
 struct Part {
   const char* name;
   int width;
+  int height;
   const std::vector<float>* values;
 };
 
-std::array<Part, 3> parts_of(const StreakTable& t) {
-  return {{{"modulation", t.oscillations * t.along, &t.modulation},
-           {"profile", t.across, &t.profile},
-           {"mean", 1, &t.mean}}};
+constexpr int part_count = 4;
+std::array<Part, part_count> parts_of(const StreakTable& t) {
+  const int entries = t.grid.entries();
+  return {{{"modulation", t.oscillations * t.along, entries, &t.modulation},
+           {"profile", t.across, entries, &t.profile},
+           {"mean", 1, entries, &t.mean},
+           {"phase", drop_phase_bins, 1, &t.phase}}};
 }
 
 OIIO::ImageSpec spec_of(const StreakTable& t, const Part& part) {
-  OIIO::ImageSpec spec(part.width, t.grid.entries(), 1, OIIO::TypeDesc::FLOAT);
+  OIIO::ImageSpec spec(part.width, part.height, 1, OIIO::TypeDesc::FLOAT);
   spec.channelnames = {"Y"};
   spec.full_width = t.oscillations * t.along;  // OpenEXR wants the same of all images of a file
+  spec.full_height = t.grid.entries();
   const auto number = [&](const char* name, double value) {
     spec.attribute(std::string("petrichor:") + name, float(value));
   };
@@ -40,8 +46,8 @@ OIIO::ImageSpec spec_of(const StreakTable& t, const Part& part) {
   spec.attribute(
       "ImageDescription",
       "Streaks of an oscillating drop. Row (view * light nodes + light) * azimuth nodes + azimuth; elevations "
-      "-90 to 90, azimuth 0 to 180 degrees. Radiance per irradiance (1/sr) = the sphere's phase function * "
-      "mean * modulation * profile; the last two have mean 1.");
+      "-90 to 90, azimuth 0 to 180 degrees. Radiance per irradiance (1/sr) = "
+      "phase * mean * modulation * profile; phase by sin(turn / 2), the last two have mean 1.");
   whole("streak_table", version);
   whole("view_nodes", t.grid.view);
   whole("light_nodes", t.grid.light);
@@ -82,7 +88,7 @@ Result<void> write_streak_table(const std::string& file, const StreakTable& tabl
   beside.replace_filename("." + target.stem().string() + ".part.exr");
   std::error_code error;
   if (target.has_parent_path()) std::filesystem::create_directories(target.parent_path(), error);
-  const std::array<Part, 3> parts = parts_of(table);
+  const std::array<Part, part_count> parts = parts_of(table);
   std::vector<OIIO::ImageSpec> specs;
   for (const Part& part : parts) specs.push_back(spec_of(table, part));
   const auto failed = [&](const std::string& why) {
@@ -127,20 +133,20 @@ Result<StreakTable> load_streak_table(const std::string& file) {
   t.drop = {number("diameter_mm"), number("amplitude_20"), number("amplitude_31"), number("lean_deg"),
             number("exposure_s")};
   if (!sensible(t)) return failure(fmt::format("{}: its sizes make no sense; {}", file, advice));
-  const std::array<Part, 3> parts = parts_of(t);
-  const std::array<std::vector<float>*, 3> values{&t.modulation, &t.profile, &t.mean};
-  for (int i = 0; i < 3; ++i) {
-    if (!in->seek_subimage(i, 0) || in->spec().width != parts[i].width || in->spec().height != t.grid.entries() ||
+  const std::array<Part, part_count> parts = parts_of(t);
+  const std::array<std::vector<float>*, part_count> values{&t.modulation, &t.profile, &t.mean, &t.phase};
+  for (int i = 0; i < part_count; ++i) {
+    if (!in->seek_subimage(i, 0) || in->spec().width != parts[i].width || in->spec().height != parts[i].height ||
         in->spec().nchannels != 1)
       return failure(fmt::format("{}: image '{}' is missing or has another size than the table says; {}", file,
                                  parts[i].name, advice));
-    values[i]->resize(std::size_t(parts[i].width) * t.grid.entries());
+    values[i]->resize(std::size_t(parts[i].width) * parts[i].height);
     if (!in->read_image(i, 0, 0, 1, OIIO::TypeDesc::FLOAT, values[i]->data())) {
       const std::string why = in->geterror();
       return failure(fmt::format("{}: image '{}' cannot be read ({}); {}", file, parts[i].name, why, advice));
     }
     for (const float v : *values[i])
-      if (!std::isfinite(v) || v < 0.0f)
+      if (!std::isfinite(v) || v < 0.0f || (values[i] == &t.mean && v == 0.0f))
         return failure(fmt::format("{}: image '{}' holds values that are no light; {}", file, parts[i].name, advice));
   }
   return t;
