@@ -18,8 +18,9 @@ static_assert(LAYERED_SHELLS == layered_shells && LAYERED_LEVELS == layered_leve
 
 struct LayeredGpu {
   std::shared_ptr<RainOptics> optics;
-  Texture placement, normals, drop_light, haze, open_share;
-  int stretch = -1;  // that the placement was made for
+  Texture placement, normals, drop_light, haze, open_share, rain;
+  int stretch = -1;            // that the placement was made for
+  float drop_coverage = 0.5f;  // of a layer of the normal map
 };
 
 bool wanted(const Frame& frame) {
@@ -33,6 +34,9 @@ void make_textures(LayeredGpu& gpu, int stretch) {
     const auto normals = make_drop_normals(size, LAYERED_SHAPES);
     glTextureSubImage3D(gpu.normals.id, 0, 0, 0, 0, size, size, LAYERED_SHAPES, GL_RGBA, GL_BYTE, normals.data());
     glGenerateTextureMipmap(gpu.normals.id);
+    float covered = 0.0f;
+    for (const auto& texel : normals) covered += texel[2] > 0 ? 1.0f : 0.0f;
+    gpu.drop_coverage = covered / static_cast<float>(normals.size());
     glTextureParameteri(gpu.normals.id, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
     gpu.placement = make_texture_2d(layered_placement, layered_placement, GL_RG32UI);
   }
@@ -215,6 +219,54 @@ void fill_shells(LayeredGpu& gpu, PassContext& context, const Cells& cells) {
   glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
 }
 
+// As printed. Its rain is glued to the screen: whatever the camera does, only the direction that it falls in changes.
+void draw_published(LayeredGpu& gpu, PassContext& context) {
+  const Frame& frame = context.frame;
+  const FrameUniforms& u = frame.uniforms;
+  const FrameLayered& layered = frame.rain->layered;
+  const bool normals = context.has("environment"), scene = context.has("depth");
+  hold(gpu.rain, context.width, context.height, 1, GL_RGBA16F);
+  // v_r in clip space: of a drop at the middle of the layers' depths.
+  constexpr float middle_m = 5.0f;
+  const glm::vec3 seen = glm::mat3(u.view) * layered.direction_mps;
+  const glm::vec2 clip = glm::vec2(seen.x, seen.y) / (middle_m * u.lens.x);
+  const float speed = glm::length(clip);
+  const glm::vec2 direction = speed > 1e-6f ? clip / speed : glm::vec2(0.0f, -1.0f);
+  const Program& program = context.program(normals ? "published_normals" : "published");
+  program.use();
+  set_rays(program, u, context.width, context.height);
+  set_artist(program, layered);
+  program.set("use_depth", int(scene));
+  program.set("direction", direction);
+  program.set("speed", speed);
+  program.set("elapsed_s", static_cast<float>(layered.time_s));
+  program.set("parallax", layered.parallax);
+  // An artist's choices: drops a hundredth of the picture's height wide at w = 1, six times as long.
+  program.set("cells", 100.0f);
+  program.set("elongation", 6.0f);
+  // "The strength": more drops in stronger rain. Their opacity is chosen so that the picture's mean is the rain's in
+  // the open; the mean share of a texel that a drop covers is the normal map's.
+  const float depth = frame.rain->share(RainRung::composite) * frame.rain->drawn_extinction_per_m * layered.far_m;
+  const float present = std::clamp(0.1f * std::sqrt(frame.rain->rain_mm_per_hour), 0.05f, 1.0f);
+  program.set("present", present);
+  program.set("opacity", (1.0f - std::exp(-depth)) / (present * gpu.drop_coverage));
+  if (scene) context.bind_texture(0, "depth");
+  glBindTextureUnit(1, gpu.placement.id);
+  glBindTextureUnit(2, gpu.drop_light.id);
+  glBindTextureUnit(3, gpu.normals.id);
+  if (normals) context.bind_texture(7, "environment");
+  glBindImageTexture(0, gpu.rain.id, 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RGBA16F);
+  program.dispatch(context.width, context.height);
+  glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
+  const Program& blur = context.program("blur");
+  blur.use();
+  // By the frame's time, as a scroll that is sampled once a frame must be.
+  blur.set("smear", direction * speed * std::min(frame.step_s, 0.25f) * 0.5f * glm::vec2(1.0f / u.lens.y, 1.0f));
+  glBindTextureUnit(0, gpu.rain.id);
+  context.bind_image(0, "colour", GL_READ_WRITE);
+  blur.dispatch(context.width, context.height);
+}
+
 void draw(LayeredGpu& gpu, PassContext& context) {
   const Frame& frame = context.frame;
   int shells = static_cast<int>(context.parameter("shells"));
@@ -223,6 +275,7 @@ void draw(LayeredGpu& gpu, PassContext& context) {
   make_textures(gpu, cells.stretch);
   bind_rain_optics(*gpu.optics, frame);
   fill_shells(gpu, context, cells);
+  if (frame.rain->layered.published) return draw_published(gpu, context);
   // Drops nearer than a metre show the world in them where they are a pixel wide.
   const bool scene = context.has("depth"),
              normals = context.has("environment") && cells.drop.diameter_m > cells.pixel_rad * layered_edges_m[0];
@@ -268,6 +321,9 @@ std::vector<PassOffer> layered_passes(std::shared_ptr<RainOptics> optics) {
                    {"layers_normals", {{layers}, {"NORMALS"}}},
                    {"layers_turning", {{layers}, {"TURNING"}}},
                    {"layers_normals_turning", {{layers}, {"NORMALS", "TURNING"}}},
+                   {"published", {{folder + "layered_published.comp.glsl"}, {}}},
+                   {"published_normals", {{folder + "layered_published.comp.glsl"}, {"NORMALS"}}},
+                   {"blur", {{folder + "layered_blur.comp.glsl"}, {}}},
                    {"light", {{light}, {}}},
                    {"light_environment", {{light}, {"ENVIRONMENT"}}}};
   offer.shaders["shelter"] = {{folder + "shell_shelter.comp.glsl"}, {}};
