@@ -17,6 +17,7 @@
 #include "systems/rainfall/ladders.hpp"
 #include "systems/rainfall/layered/motion.hpp"
 #include "systems/rainfall/near_drops/near.hpp"
+#include "systems/rainfall/near_drops/near_chart.hpp"
 #include "systems/rainfall/passes.hpp"
 #include "systems/rainfall/streaks/chart.hpp"
 #include "systems/rainfall/snow/chart.hpp"
@@ -207,6 +208,7 @@ std::vector<ChartOffer> all_charts() {
       {"classes", "how many size classes of drops are enough", chart_classes},
       {"occlusion", "maps of shelter against rays, on a street of awnings and in the town", chart_shelter},
       {"streaks", "size of the streak table against its error, and what nearest-four reading costs", chart_streaks},
+      {"near_drops", "drops near the eye, by maps and by closed form, against traced ones", chart_near_drops},
   };
 }
 

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "components/weather.hpp"
 #include "components/techniques.hpp"
+#include "components/weather.hpp"
 #include "systems/rainfall/drop_optics.hpp"
 
 namespace petrichor {
@@ -74,7 +74,8 @@ RainLayers near_layers(const Frame& frame, const NearChoice& choice) {
     if (!c.drawn) return false;
     // A sphere's image grows towards the corners, by the square root of the cosine across.
     const double diameter = c.diameter_mm * 1e-3;
-    const double depth = diameter * lens.pixels_per_radian / (choice.least_width_px * std::sqrt(lens.corner)) + diameter;
+    const double depth =
+        diameter * lens.pixels_per_radian / (choice.least_width_px * std::sqrt(lens.corner)) + diameter;
     if (depth < nearest_m) return false;
     box.low = glm::min(glm::dvec3(0.0), moved);
     box.high = glm::max(glm::dvec3(0.0), moved);

@@ -81,7 +81,7 @@ void main() {
   NearDropGpu drop = drops[index];
   int lane = int(gl_LocalInvocationIndex);
   vec2 from = drop.from_to.xy, to = drop.from_to.zw;
-  float r = drop.depths.w, kept = drop.depths.z / (3.14159265 * r * r);
+  float r = max(drop.depths.w, 0.5), kept = drop.depths.z / (3.14159265 * r * r);  // at least a pixel wide
   Shown s;
   s.index = index;
   s.ray = normalize(drop.place.xyz);
@@ -97,6 +97,7 @@ void main() {
   float len = length(span), area = min(1.0 / (r * r), 3.14159265);
   if (len < 0.5) {  // stands still: a disc with the edge of a pixel
     vec2 centre = 0.5 * (from + to);
+    kept *= r * r / (r * r + 0.0833333);  // whose edge adds to its area
     ivec2 low = ivec2(max(floor(centre - r - 1.0), 0.0)), high = ivec2(min(ceil(centre + r + 1.0), frame.size.xy - 1.0));
     int wide = high.x - low.x + 1, pixels = max(wide, 0) * max(high.y - low.y + 1, 0);
     for (int i = lane; i < pixels; i += NEAR_LANES) {

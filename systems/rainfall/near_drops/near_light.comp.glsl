@@ -16,15 +16,16 @@ void main() {
   vec3 d = normalize(drop.place.xyz), place = drop.place.xyz - captured_from;
   vec2 side = lateral_of(drop);
   vec3 right = normalize(across(side, d)), up = cross(right, d);
-  const int along = 6;
-  int aside = columns == 4 ? 2 : 1;
+  // So many samples leave a fifth of what one colour a drop is wrong by; drops under a pixel need not so many.
+  bool tiny = drop.depths.w < 0.5;
+  int along = tiny ? 6 : 8, aside = columns == 4 ? (tiny ? 2 : 3) : columns == 8 ? 2 : 1;
   for (int c = first; c < columns; c += 4) {
     vec3 sum = vec3(0.0);
     float weights = 0.0;
     for (int k = 0; k < aside; ++k) {
       float width = 2.0 / float(columns * aside);
       float x = (float(c * aside + k) + 0.5) * width - 1.0;
-      float chord = sqrt(1.0 - x * x), area = width * 2.0 * chord / float(along);
+      float chord = sqrt(1.0 - x * x), area = width * 2.0 * chord / float(along) * 0.6;  // a little sharper than even
       vec3 column = vec3(0.0);
       for (int j = 0; j < along; ++j) {
         float y = chord * ((2.0 * float(j) + 1.0) / float(along) - 1.0);

@@ -30,6 +30,7 @@ void main() {
   for (uint i = gl_LocalInvocationIndex; i < area; i += 64u) {
     uint at = (cell * area + i) * uint(NEAR_MAP_WORDS);
     vec4 shares = unpackUnorm4x8(maps[at + 4u]);
+    shares *= shares;
     vec3 sum = vec3(0.0);
     for (int k = 0; k < 4; ++k)
       if (shares[k] > 0.0) sum += shares[k] * world_seen(place, direction(unpackSnorm2x16(maps[at + uint(k)])), solid);

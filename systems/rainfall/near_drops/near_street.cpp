@@ -57,7 +57,8 @@ Model street_model(const NearStreet& street) {
           p.vertices.push_back(vertex);
         }
         // Counter-clockwise from outside: the lower side is turned round.
-        for (const std::uint32_t i : {0u, 1u, 2u, 0u, 2u, 3u}) p.indices.push_back(first + (side || i == 0u ? i : 4u - i));
+        for (const std::uint32_t i : {0u, 1u, 2u, 0u, 2u, 3u})
+          p.indices.push_back(first + (side || i == 0u ? i : 4u - i));
       }
     Mesh mesh;
     mesh.primitives.push_back(std::move(p));

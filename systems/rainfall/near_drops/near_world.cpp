@@ -20,7 +20,7 @@ constexpr float brightest_cd_m2 = 30.0f;  // as the environment of the lighting:
 // +x -x +y -y +z -z, right-handed, as octahedral.glsl's face_from_direction reads them.
 glm::quat face_orientation(int face) {
   static constexpr glm::vec3 x{1, 0, 0}, y{0, 1, 0}, z{0, 0, 1};
-  const std::array<glm::mat3, 6> axes{glm::mat3(z, y, -x), glm::mat3(-z, y, x), glm::mat3(x, z, -y),
+  const std::array<glm::mat3, 6> axes{glm::mat3(z, y, -x), glm::mat3(-z, y, x),  glm::mat3(x, z, -y),
                                       glm::mat3(x, -z, y), glm::mat3(-x, y, -z), glm::mat3(x, y, z)};
   return glm::quat_cast(axes[static_cast<std::size_t>(face)]);
 }
@@ -119,7 +119,8 @@ std::vector<NearLampGpu> lamps_at(const Frame& frame, const glm::dvec3& place_m)
     const float outer = std::cos(light.outer_cone_rad);
     // KHR_lights_punctual, "Inner and Outer Cone Angles".
     const float scale = spot ? 1.0f / std::max(0.001f, inner - outer) : 0.0f;
-    lamps.push_back({glm::vec4(glm::vec3(glm::dvec3(light.position_m) - place_m), light_range_m(light, frame.camera.exposure_ev100)),
+    lamps.push_back({glm::vec4(glm::vec3(glm::dvec3(light.position_m) - place_m),
+                               light_range_m(light, frame.camera.exposure_ev100)),
                      glm::vec4(light.intensity, std::max(light.source_radius_m, 0.005f)),
                      glm::vec4(light.direction, static_cast<float>(light.kind)),
                      glm::vec4(scale, spot ? -outer * scale : 1.0f, -1.0f, light.lights_rain ? 1.0f : 0.0f)});
@@ -168,7 +169,8 @@ void light(NearWorld& world, const Frame& frame, const Texture* shadow_atlas, co
     if (bounce > 0) break;
     std::array<float, 24> last{};
     glGetTextureImage(world.cube.id, world.cube.levels - 1, GL_RGBA, GL_FLOAT, sizeof last, last.data());
-    for (int face = 0; face < 6; ++face) all_round += glm::vec3(last[4 * face], last[4 * face + 1], last[4 * face + 2]) / 6.0f;
+    for (int face = 0; face < 6; ++face)
+      all_round += glm::vec3(last[4 * face], last[4 * face + 1], last[4 * face + 2]) / 6.0f;
   }
   world.lit = true;
   ++world.relights;
@@ -180,8 +182,8 @@ void update_near_world(NearWorld& world, const Frame& frame, int face_texels, fl
                        const NearWorldPrograms& programs) {
   if (world.face_texels != face_texels) make_targets(world, face_texels);
   const glm::i64vec3 cell(glm::round(frame.camera.position_m / double(step_m)));
-  if (!world.captured || cell != world.cell || step_m != world.step_m || world.geometry_version != frame.geometry_version ||
-      world.scene != frame.scene) {
+  if (!world.captured || cell != world.cell || step_m != world.step_m ||
+      world.geometry_version != frame.geometry_version || world.scene != frame.scene) {
     world.cell = cell;
     world.step_m = step_m;
     world.place_m = glm::dvec3(cell) * double(step_m);

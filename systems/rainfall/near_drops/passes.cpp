@@ -85,7 +85,8 @@ void set_world(const NearGpu& gpu, const Frame& frame, int world_is, const Progr
   program.set("coarsest", static_cast<float>(gpu.world.cube.levels - 1));
   program.set("world_is", world_is);
   // Printed: the huge cube moves with the camera.
-  program.set("captured_from", world_is == 1 ? glm::vec3(gpu.world.place_m - frame.camera.position_m) : glm::vec3(0.0f));
+  program.set("captured_from",
+              world_is == 1 ? glm::vec3(gpu.world.place_m - frame.camera.position_m) : glm::vec3(0.0f));
   program.set("capacity", unsigned(gpu.capacity));
   program.set("cells_aside", gpu.map_cells);
   program.set("map_pixels", gpu.map_pixels);
@@ -215,7 +216,7 @@ std::vector<PassOffer> near_drops_passes(std::shared_ptr<RainOptics>) {
   offers[0].name = "near_environment";
   offers[0].meaning = "the world captured in six faces at the camera, for drops near the eye";
   offers[0].slots = {{"near_environment", SlotAccess::write}, {"shadow_atlas", SlotAccess::read, true}};
-  offers[0].parameters = {{"face", 64.0}};
+  offers[0].parameters = {{"face", 128.0}};
   const std::string variant = "MATERIAL_VARIANT " + std::to_string(static_cast<unsigned>(variant_general));
   offers[0].shaders = {
       {"surfaces", {{"systems/geometry/gbuffer.vert.glsl", "systems/geometry/gbuffer.frag.glsl"}, {variant}}},
@@ -270,8 +271,30 @@ NearListed read_near_list() {
   read_buffer(gpu->list, listed.drops.data(), listed.drops.size() * sizeof(NearDropGpu));
   std::vector<glm::uvec2> packed(std::size_t(stats.drops) * NEAR_COLUMNS);
   read_buffer(gpu->profiles, packed.data(), packed.size() * sizeof(glm::uvec2));
-  for (const glm::uvec2& p : packed)
-    listed.columns.emplace_back(glm::unpackHalf2x16(p.x), glm::unpackHalf2x16(p.y).x);
+  const auto colour = [](const glm::uvec2& p) {
+    return glm::vec3(glm::unpackHalf2x16(p.x), glm::unpackHalf2x16(p.y).x);
+  };
+  for (const glm::uvec2& p : packed) listed.columns.push_back(colour(p));
+  // Those by maps have their columns in the images of cells: means over the drop's own columns of what is drawn.
+  std::vector<glm::uvec2> row(static_cast<std::size_t>(std::max(gpu->map_pixels, 1)));
+  for (std::size_t i = 0; i < listed.drops.size(); ++i) {
+    const NearDropGpu& drop = listed.drops[i];
+    if (drop.bits.y == 0) continue;
+    const std::size_t area = row.size() * row.size();
+    read_buffer(gpu->images, row.data(), row.size() * 8, ((drop.bits.y - 1) * (area + row.size()) + area) * 8);
+    const int n = static_cast<int>(drop.place.w), fine = 64 / n;
+    for (int c = 0; c < n; ++c) {
+      glm::vec3 sum(0.0f);
+      for (int k = 0; k < fine; ++k) {
+        const float last = static_cast<float>(row.size() - 1);
+        const float x = (static_cast<float>(c * fine + k) + 0.5f) / static_cast<float>(n * fine);
+        const float at = std::clamp(x * static_cast<float>(row.size()) - 0.5f, 0.0f, last), low = std::floor(at);
+        const auto left = static_cast<std::size_t>(low);
+        sum += glm::mix(colour(row[left]), colour(row[std::min(left + 1, row.size() - 1)]), at - low);
+      }
+      listed.columns[i * NEAR_COLUMNS + c] = sum / static_cast<float>(fine);
+    }
+  }
   return listed;
 }
 

@@ -22,10 +22,10 @@ struct NearStats {
 };
 NearStats near_stats();  // of the graph made last; waits for the GPU
 
-// What the last frame listed, and by closed form the column means of those that are streaks (for charts and tests).
+// What the last frame listed, and the column means of those that are streaks (for charts and tests).
 struct NearListed {
   std::vector<NearDropGpu> drops;
-  std::vector<glm::vec3> columns;  // NEAR_COLUMNS a drop
+  std::vector<glm::vec3> columns;  // NEAR_COLUMNS a drop, of which place.w are used
 };
 NearListed read_near_list();
 
