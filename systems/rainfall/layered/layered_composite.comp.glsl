@@ -32,6 +32,7 @@ uniform float per_cell;                 // cells in a metre
 uniform uint stretch;                   // cells are 2^stretch times as tall as the placement's
 uniform float odd_share;                // of every other cell: 1, towards 0 before they merge by twos
 uniform vec4 shells[LAYERED_SHELLS];    // from, m; depth, m; opacity of the streaks; drops in a cell a metre away
+uniform vec2 roots[LAYERED_SHELLS];     // 1 / sqrt of the distances where a shell begins and ends
 uniform int shell_count;
 uniform float columns[LAYERED_SHELLS];  // round the way, at its equator
 uniform float pixel_rad;
@@ -82,7 +83,9 @@ Streaks streaks_of(View v, int shell) {
   float column = floor(x);
   x -= column;
   uint h = mixed(uint(column) + uint(shell) * 0x10000u ^ v.salt);
-  float distance_m = extent.x + extent.y * (float(h & 0xffffu) * (1.0 / 65536.0));
+  // Nearer ones more often: what deviates is mostly near (by 1 / r^2 of the rain's depth). 1 / sqrt(r) is even.
+  float root = mix(roots[shell].x, roots[shell].y, float(h & 0xffffu) * (1.0 / 65536.0));
+  float distance_m = 1.0 / (root * root);
   float per_s = distance_m * v.per_metre;
   float y = v.s * per_s - v.travelled;
   // A streak reaches from where the shutter opened to where it closed; soft over a pixel or the drop itself.

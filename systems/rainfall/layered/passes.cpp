@@ -143,9 +143,12 @@ Cells cells_of(const Frame& frame, int shells) {
     const float pixels = to < 2.0f ? 8.0f : to < 3.0f ? 4.0f : 2.0f;
     c.columns[i] = columns_of(std::max(double(pixels * c.pixel_rad), 2.5 * c.drop.diameter_m / from)) / wider;
     c.drops[i] = static_cast<float>(share * c.drop.per_m3 * (to - from) * c.height_m * 2.0 * M_PI / c.columns[i]);
-    // Where a cell has more than one drop, one stands for all with the deviation that they would have; 0.75: the square
-    // of the sine of a usual direction.
-    const float expected = c.drops[i] * 0.5f * (from + to) * 0.75f;
+    // Where a cell has more than one drop, one stands for all with the deviation that they would have. Their optical
+    // depths go with 1 / r^2, so the shell's variance is that of one at sqrt(from to); columns are spread evenly in
+    // 1 / sqrt(r), and a column's variance goes with the mean of 1 / r. 0.75: the square of the sine of a usual
+    // direction.
+    const float inverse = (1.0f / from + 1.0f / to + 1.0f / std::sqrt(from * to)) / 3.0f;
+    const float expected = c.drops[i] * from * to * inverse * 0.75f;
     c.contrast[i] = std::min(1.0f, std::sqrt(0.5f * (1.0f + c.odd_share) / std::max(expected, 1e-9f)));
   }
   return c;
@@ -170,6 +173,7 @@ void set_cells(const Program& program, const Frame& frame, const Cells& c) {
   for (int i = 0; i < c.shells; ++i) {
     const float from = c.edges_m[i], to = c.edges_m[i + 1];
     program.set(indexed("shells", i), glm::vec4(from, to - from, c.opacity[i] * c.contrast[i], c.drops[i]));
+    program.set(indexed("roots", i), glm::vec2(1.0f / std::sqrt(from), 1.0f / std::sqrt(to)));
     program.set(indexed("columns", i), c.columns[i]);
   }
 }
