@@ -49,8 +49,14 @@ Answer choose(const Question& question) {
   const double saving_ms = least_saving * expected_ms(question, question.now);
   do {
     const double ms = expected_ms(question, rungs);
-    int changes = 0;
-    for (std::size_t e = 0; e < effect_count; ++e) changes += rungs[e] != question.now[e];
+    int changes = 0, worse = 0;
+    for (std::size_t e = 0; e < effect_count; ++e) {
+      if (rungs[e] == question.now[e]) continue;
+      const auto& ladder = (*question.ladders)[e].rungs;
+      ++changes;
+      worse += ladder[static_cast<std::size_t>(rungs[e])].chart_error >
+               ladder[static_cast<std::size_t>(question.now[e])].chart_error;
+    }
     const double error = visible_error(question, rungs);
     const double handicapped_ms = ms + saving_ms * changes + 1e-6 * error;
     if (handicapped_ms < cheapest_ms) {
@@ -58,7 +64,8 @@ Answer choose(const Question& question) {
       cheapest = {rungs, ms, error, false};
     }
     if (ms * question.spread > question.limit_ms) continue;
-    const double value = error + change_penalty * changes + 1e-6 * ms / question.limit_ms;
+    const double value =
+        error + change_penalty * changes + question.trade_penalty * worse + 1e-6 * ms / question.limit_ms;
     if (value < best_value) {
       best_value = value;
       best = {rungs, ms, error, true};

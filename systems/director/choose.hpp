@@ -19,6 +19,7 @@ struct Question {
   std::array<std::vector<char>, effect_count> allowed;  // by rung; `now` always is
   double spread = 1.0;                                  // p95 over median
   double limit_ms = 0.0;                                // of the p95
+  double trade_penalty = 0.0;  // of visible error, for each effect that gets worse so that another gets better
 };
 
 struct Answer {

@@ -134,7 +134,7 @@ void learn_passes(DirectorCosts& costs, const Techniques& techniques, const std:
     sane &= std::isfinite(pass.ms) && pass.ms >= 0.0;
     sum += pass.ms;
   }
-  if (!sane || sum < 0.4 * frame_ms || sum > 1.25 * frame_ms) return distrust(costs, costs.trust > -10 ? 2 : 0);
+  if (!sane || sum < 0.3 * frame_ms || sum > 2.0 * frame_ms) return distrust(costs, costs.trust > -10 ? 2 : 0);
   costs.trust = std::min(costs.trust + 1, 3);
   if (costs.trust < 2) return;
   const auto size = techniques[Effect::resolution].rung;
@@ -152,7 +152,7 @@ void learn_passes(DirectorCosts& costs, const Techniques& techniques, const std:
 
 void learn_change(DirectorCosts& costs, const std::array<int, effect_count>& from,
                   const std::array<int, effect_count>& to, const std::array<double, effect_count>& coverage,
-                  double before_ms, double expected_ms, double after_ms) {
+                  double before_ms, double expected_ms, double after_ms, double noise) {
   Techniques then;
   for (std::size_t e = 0; e < effect_count; ++e) then.set(static_cast<Effect>(e), from[e]);
   const CostTable table = cost_table(costs, then, coverage, before_ms);
@@ -173,7 +173,8 @@ void learn_change(DirectorCosts& costs, const std::array<int, effect_count>& fro
   if (!(sum > 0.0)) return;
   const double surprise = after_ms - expected_ms;
   const double change = std::max(std::abs(expected_ms - before_ms), std::abs(after_ms - before_ms));
-  if (effects_changed && std::abs(surprise) > std::max(0.5 * change, 0.15 * before_ms) && costs.trust >= 2)
+  if (effects_changed && std::abs(surprise) > std::max(0.5 * change, std::max(0.15, noise) * before_ms) &&
+      costs.trust >= 2)
     distrust(costs, 2 << std::min(costs.caught++, 9));  // each time it is caught it is believed later
   for (std::size_t e = 0; e < effect_count; ++e) {
     if (from[e] == to[e]) continue;
@@ -181,7 +182,8 @@ void learn_change(DirectorCosts& costs, const std::array<int, effect_count>& fro
     if (e == resolution_effect) {
       const double expected_rest = table.ms[e][size_to][size_to];
       if (!(expected_rest > 0.0)) continue;
-      const double factor = std::pow(std::clamp((expected_rest + share_ms) / expected_rest, 0.5, 2.0), 0.7);
+      const double factor =
+          std::pow(std::clamp((expected_rest + share_ms) / expected_rest, 0.5, 2.0), 0.7 - 0.5 * std::min(noise, 0.6));
       if (size_to != full_size)
         costs.scale[size_to] *= factor;
       else
@@ -190,12 +192,14 @@ void learn_change(DirectorCosts& costs, const std::array<int, effect_count>& fro
         costs.scale[q] = std::clamp(costs.scale[q], 0.05, costs.scale[q + 1]);
     } else if (costs.trust < 2) {
       const double expected = table.ms[e][to[e]][size_to];
-      const double found = std::clamp(expected + share_ms, 0.0, 4.0 * expected + 0.25 * before_ms);
+      const double found = std::clamp(expected + share_ms, 0.0, 3.0 * expected + 0.1 * before_ms);
       // Twice: one frame's noise does not outvote it. What the new rung cannot have saved, the old one cost.
       for (int i = 0; i < 2; ++i) add(costs.measured[e][to[e]][size_to], found);
+      const double old_ms = table.ms[e][from[e]][size_from];
       if (expected + share_ms < 0.0)
         for (int i = 0; i < 2; ++i)
-          add(costs.measured[e][from[e]][size_from], table.ms[e][from[e]][size_from] - (expected + share_ms));
+          add(costs.measured[e][from[e]][size_from],
+              std::min(old_ms - (expected + share_ms), 3.0 * old_ms + 0.1 * before_ms));
     }
   }
 }

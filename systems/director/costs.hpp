@@ -52,10 +52,11 @@ CostTable cost_table(const DirectorCosts&, const Techniques&, const std::array<d
 // (not finite, negative, a sum that has nothing to do with the frame) loses trust and is not believed.
 void learn_passes(DirectorCosts&, const Techniques&, const std::array<double, effect_count>& coverage,
                   std::span<const PassTime>, double frame_ms);
-// A change of rungs was expected to turn frames of before_ms into expected_ms, and they became after_ms.
+// A change of rungs was expected to turn frames of before_ms into expected_ms, and they became after_ms; frames vary by
+// the share `noise` anyway.
 void learn_change(DirectorCosts&, const std::array<int, effect_count>& from, const std::array<int, effect_count>& to,
                   const std::array<double, effect_count>& coverage, double before_ms, double expected_ms,
-                  double after_ms);
+                  double after_ms, double noise);
 
 double median_of(std::vector<double> values);  // 0 for none
 

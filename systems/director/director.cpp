@@ -15,6 +15,8 @@ constexpr double least_gain = 0.004;  // of visible error: for less nobody climb
 constexpr int wish_frames_needed = 8;
 constexpr double climb_after_s = 0.3, wish_needed_s = 0.2;
 constexpr double failed_within_s = 60.0, first_bar_s = 8.0, longest_bar_s = 600.0, proven_after_s = 120.0;
+constexpr double soon_s = 20.0, first_rest_s = 3.0, longest_rest_s = 120.0;
+constexpr double trade_penalty = 0.1;
 constexpr double much_lighter = 0.85;  // the rest of the frame, for a climb that failed to be tried early
 constexpr int profile_every = 30, profile_soon = 6;
 constexpr std::size_t history_kept = 4096;
@@ -88,6 +90,11 @@ void switch_to(Director& d, std::size_t e, int rung, double fade_s, const char* 
 void bar_failed_climb(Director& d, std::size_t e, const CostTable& table) {
   DirectedEffect& effect = d.effects[e];
   if (effect.since_climb_s > failed_within_s) return;
+  if (effect.since_climb_s < soon_s && d.since_failure_s > 0.0) {
+    d.rested_s = d.rested_s > 0.0 ? std::min(2.0 * d.rested_s, longest_rest_s) : first_rest_s;
+    d.rest_s = d.rested_s;
+    d.since_failure_s = 0.0;
+  }
   const std::size_t rung = effect.choice.rung;
   effect.bar_s[rung] = effect.bar_s[rung] > 0.0 ? std::min(2.0 * effect.bar_s[rung], longest_bar_s) : first_bar_s;
   effect.barred_s[rung] = effect.bar_s[rung];
@@ -177,6 +184,9 @@ void follow_the_user(Director& d, const DirectorInput& in) {
 void advance_clocks(Director& d, double step_s) {
   d.time_s += step_s;
   d.regime_s += step_s;
+  d.rest_s = std::max(d.rest_s - step_s, 0.0);
+  d.since_failure_s += step_s;
+  if (d.since_failure_s > proven_after_s + d.rested_s) d.rested_s = 0.0;
   ++d.frame;
   for (DirectedEffect& effect : d.effects) {
     effect.since_switch_s += step_s;
@@ -245,7 +255,7 @@ bool over_budget(Director& d) {
 
 void check_last_change(Director& d, std::size_t frames) {
   learn_change(d.costs, d.learn_from, d.learn_to, d.coverage, d.learn_from_ms, d.learn_expected_ms,
-               median_of(last(d.recent_ms, frames)));
+               median_of(last(d.recent_ms, frames)), director_spread(d) - 1.0);
   d.learning = false;
 }
 
@@ -289,6 +299,8 @@ void decide(Director& d, double step_s) {
     apply(d, q, choose(q), table, "over budget");
     return;
   }
+  if (d.rest_s > 0.0) return;
+  q.trade_penalty = trade_penalty;
   forbid_barred(d, q, table);
   const Answer answer = choose(q);
   const bool wanted = answer.fits && visible_error(q, q.now) - answer.error > least_gain;

@@ -71,6 +71,8 @@ struct Director {
   double wish_s = 0.0;             // how long the same climb has been wanted
   int wish_frames = 0;
   std::array<int, effect_count> wish{};
+  // After a climb that failed nothing is tried for a while, longer each time.
+  double rest_s = 0.0, rested_s = 0.0, since_failure_s = 1e9;
   std::int64_t profiled_at = -1000;
   bool new_rungs = true;  // no profile since the last change
   bool learning = false;  // the last change is not yet checked against the frames

@@ -37,6 +37,8 @@ std::string reason(const Director& d, std::size_t e, const CostTable& table) {
   if (effect.barred_s[at] > 0.0)
     return fmt::format("{} failed; tried again in {:.0f} s or when the frame is much lighter", next->name,
                        effect.barred_s[at]);
+  if (d.rest_s > 0.0 && need_ms < left_ms)
+    return fmt::format("a climb failed; nothing is tried for {:.0f} s", d.rest_s);
   if (effect.since_switch_s < director_hold_s && need_ms < left_ms) return "changed a moment ago";
   return need_ms < left_ms ? need + "; it needs some room to spare" : need;
 }
