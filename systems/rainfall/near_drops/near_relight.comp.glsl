@@ -25,15 +25,22 @@ void main() {
   uint cells = uint(cells_aside * cells_aside * cells_aside), cell = stamps[cells + index];
   uint side = uint(map_pixels), area = side * side, image = cell * (area + side);
   vec3 place = cell_middle(cell) - captured_from;
-  // A pixel's bundle, on average: the disc's whole turn of rays over its pixels.
-  float solid = 12.566371 / (0.785398 * float(area));
+  float pixel = 4.0 / float(area);  // of a disc of area pi
   for (uint i = gl_LocalInvocationIndex; i < area; i += 64u) {
     uint at = (cell * area + i) * uint(NEAR_MAP_WORDS);
     vec4 shares = unpackUnorm4x8(maps[at + 4u]);
     shares *= shares;
+    // Solid angles of the pixel's bundles, as near_optics.glsl has them.
+    vec2 q = (vec2(float(i % side), float(i / side)) + 0.5) * (2.0 / float(side)) - 1.0;
+    float b = clamp(length(q), 0.02, 0.9998), in_angle = asin(b), inside = asin(b / 1.333);
+    float cos_in = cos(in_angle), ratio = cos_in / (1.333 * cos(inside));
     vec3 sum = vec3(0.0);
-    for (int k = 0; k < 4; ++k)
+    for (int k = 0; k < 4; ++k) {
+      float angle = 2.0 * in_angle - 3.1415926536 + float(k) * (3.1415926536 - 2.0 * inside);
+      float slope = max(abs(2.0 - 2.0 * float(k) * ratio) / max(cos_in, 0.15), 0.2);
+      float solid = abs(sin(angle)) * slope * pixel / b;
       if (shares[k] > 0.0) sum += shares[k] * world_seen(place, direction(unpackSnorm2x16(maps[at + uint(k)])), solid);
+    }
     sum = min(sum, vec3(6e4));
     images[image + i] = uvec2(packHalf2x16(sum.rg), packHalf2x16(vec2(sum.b, shares.x > 0.0 ? 1.0 : 0.0)));
   }
