@@ -9,7 +9,7 @@
 namespace petrichor {
 
 struct StreakBake {
-  StreakGrid grid;
+  StreakGrid grid{9, 13, 13};
   StreakDrop drop;
   int along = 16, oscillations = 8, across = 8;
   int rays = 16000;  // for each view elevation and shape

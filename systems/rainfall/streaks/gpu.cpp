@@ -1,5 +1,6 @@
 #include "systems/rainfall/streaks/gpu.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -20,21 +21,27 @@ StreakTableGpu upload_streak_table(const StreakTable& table) {
   gpu.grid = table.grid;
   gpu.along = table.along;
   gpu.oscillations = table.oscillations;
-  const int entries = table.grid.entries();
-  gpu.modulations = make_texture_2d_array(table.along, table.oscillations, entries, GL_R32F);
-  glTextureSubImage3D(gpu.modulations.id, 0, 0, 0, 0, table.along, table.oscillations, entries, GL_RED, GL_FLOAT,
-                      table.modulation.data());
-  glTextureParameteri(gpu.modulations.id, GL_TEXTURE_WRAP_S, GL_REPEAT);
-  glTextureParameteri(gpu.modulations.id, GL_TEXTURE_WRAP_T, GL_REPEAT);
-  std::vector<float> profiles;
-  profiles.reserve(std::size_t(table.across + 1) * entries);
-  for (int entry = 0; entry < entries; ++entry) {
-    const auto first = table.profile.begin() + std::ptrdiff_t(entry) * table.across;
-    profiles.insert(profiles.end(), first, first + table.across);
-    profiles.push_back(std::log(table.mean[entry]));
-  }
-  gpu.profiles = make_texture_2d_array(table.across + 1, 1, entries, GL_R32F);
-  glTextureSubImage3D(gpu.profiles.id, 0, 0, 0, 0, table.across + 1, 1, entries, GL_RED, GL_FLOAT, profiles.data());
+  // An array of layers an entry would pass the 2048 layers that drivers must offer.
+  const StreakGrid& g = table.grid;
+  const int tile_x = table.along + 1, tile_y = table.oscillations + 1, tile_across = table.across + 1;
+  gpu.modulations = make_texture_2d_array(g.azimuth * tile_x, g.light * tile_y, g.view, GL_R32F);
+  gpu.profiles = make_texture_2d_array(g.azimuth * tile_across, g.light, g.view, GL_R32F);
+  std::vector<float> tile(std::size_t(tile_x) * tile_y), profile(tile_across);
+  glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+  for (int view = 0, entry = 0; view < g.view; ++view)
+    for (int light = 0; light < g.light; ++light)
+      for (int azimuth = 0; azimuth < g.azimuth; ++azimuth, ++entry) {
+        const float* states = &table.modulation[std::size_t(entry) * table.along * table.oscillations];
+        for (int y = 0; y < tile_y; ++y)
+          for (int x = 0; x < tile_x; ++x)
+            tile[std::size_t(y) * tile_x + x] = states[y % table.oscillations * table.along + x % table.along];
+        glTextureSubImage3D(gpu.modulations.id, 0, azimuth * tile_x, light * tile_y, view, tile_x, tile_y, 1, GL_RED,
+                            GL_FLOAT, tile.data());
+        std::copy_n(&table.profile[std::size_t(entry) * table.across], table.across, profile.begin());
+        profile.back() = std::log(table.mean[entry]);
+        glTextureSubImage3D(gpu.profiles.id, 0, azimuth * tile_across, light, view, tile_across, 1, 1, GL_RED, GL_FLOAT,
+                            profile.data());
+      }
   gpu.phase = make_texture_2d(static_cast<int>(table.phase.size()), 1, GL_R32F);
   glTextureSubImage2D(gpu.phase.id, 0, 0, 0, gpu.phase.width, 1, GL_RED, GL_FLOAT, table.phase.data());
   return gpu;

@@ -6,9 +6,10 @@
 #define STREAK_TABLE_UNIT 13
 #define STREAK_PROFILE_UNIT 12
 #define STREAK_PHASE_UNIT 11
-// A layer an entry: along the streak by oscillation, both repeat.
+// A layer a view, in it a tile for each azimuth (side by side) and elevation of the lamp (one above the other).
+// Tiles of along the streak by oscillation, with the first column and row again at their ends, for both repeat:
 layout(binding = STREAK_TABLE_UNIT) uniform sampler2DArray streak_modulations;
-// A layer an entry: across the streak, and in the last texel the logarithm of the mean.
+// Tiles of across the streak, one texel high, and in the last texel the logarithm of the mean:
 layout(binding = STREAK_PROFILE_UNIT) uniform sampler2DArray streak_profiles;
 layout(binding = STREAK_PHASE_UNIT) uniform sampler2D streak_phases;  // of these drops, by sin(turn / 2)
 uniform vec4 streak_table_nodes;    // view, light, azimuth; w: 1 nearest four (Tariq 2007), 2 all angles
@@ -46,14 +47,13 @@ StreakEntries streak_entries(vec3 angles) {
   return e;
 }
 
-// The entry of a corner, and its weight.
-float streak_entry(StreakEntries e, int corner, out float weight) {
+// View, light and azimuth of a corner's entry, and its weight.
+ivec3 streak_entry(StreakEntries e, int corner, out float weight) {
   bvec3 high = bvec3((corner & 4) != 0, (corner & 2) != 0, (corner & 1) != 0);
-  ivec3 node = ivec3(high.x ? e.high.x : e.low.x, high.y ? e.high.y : e.low.y, high.z ? e.high.z : e.low.z);
   vec3 w = vec3(high.x ? e.share.x : 1.0 - e.share.x, high.y ? e.share.y : 1.0 - e.share.y,
                 high.z ? e.share.z : 1.0 - e.share.z);
   weight = w.x * w.y * w.z;
-  return (float(node.x) * streak_table_nodes.y + float(node.y)) * streak_table_nodes.z + float(node.z);
+  return ivec3(high.x ? e.high.x : e.low.x, high.y ? e.high.y : e.low.y, high.z ? e.high.z : e.low.z);
 }
 
 // Brightness at a place along the streak over that of the whole cycle: mean 1 over `along` and `oscillation`, both in
@@ -62,12 +62,14 @@ float streak_table(vec3 angles, float along, float oscillation) {
   if (streak_strength == 0.0) return 1.0;
   StreakEntries e = streak_entries(angles);
   // Texel k is the value at k, not at k + 0.5.
-  vec2 at = vec2(along, oscillation) + 0.5 / streak_table_size;
+  vec2 at = fract(vec2(along, oscillation)) * streak_table_size + 0.5;
+  vec2 per_texel = 1.0 / vec2(textureSize(streak_modulations, 0).xy), tile = streak_table_size + 1.0;
   float sum = 0.0;
   for (int i = 0; i < e.count; ++i) {
     float weight;
-    float entry = streak_entry(e, i, weight);
-    if (weight > 0.0) sum += weight * textureLod(streak_modulations, vec3(at, entry), 0.0).r;
+    ivec3 entry = streak_entry(e, i, weight);
+    vec2 place = (vec2(entry.zy) * tile + at) * per_texel;
+    if (weight > 0.0) sum += weight * textureLod(streak_modulations, vec3(place, float(entry.x)), 0.0).r;
   }
   return mix(1.0, sum, streak_strength);
 }
@@ -76,13 +78,15 @@ float streak_table(vec3 angles, float along, float oscillation) {
 float streak_across(vec3 angles, float across) {
   if (streak_strength == 0.0) return 1.0;
   StreakEntries e = streak_entries(angles);
-  float texels = float(textureSize(streak_profiles, 0).x - 1);
-  float at = clamp(0.5 * (across + 1.0) * texels, 0.5, texels - 0.5) / (texels + 1.0);
+  vec2 per_texel = 1.0 / vec2(textureSize(streak_profiles, 0).xy);
+  float texels = float(textureSize(streak_profiles, 0).x) / streak_table_nodes.z - 1.0;
+  float at = clamp(0.5 * (across + 1.0) * texels, 0.5, texels - 0.5);
   float sum = 0.0;
   for (int i = 0; i < e.count; ++i) {
     float weight;
-    float entry = streak_entry(e, i, weight);
-    if (weight > 0.0) sum += weight * textureLod(streak_profiles, vec3(at, 0.5, entry), 0.0).r;
+    ivec3 entry = streak_entry(e, i, weight);
+    vec2 place = vec2(float(entry.z) * (texels + 1.0) + at, float(entry.y) + 0.5) * per_texel;
+    if (weight > 0.0) sum += weight * textureLod(streak_profiles, vec3(place, float(entry.x)), 0.0).r;
   }
   return mix(1.0, sum, streak_strength);
 }
@@ -92,12 +96,13 @@ float streak_across(vec3 angles, float across) {
 float streak_phase(vec3 angles, float even) {
   if (streak_strength == 0.0) return even;
   StreakEntries e = streak_entries(angles);
-  int texel = textureSize(streak_profiles, 0).x - 1;
+  int tile = textureSize(streak_profiles, 0).x / int(streak_table_nodes.z);
   float sum = 0.0;
   for (int i = 0; i < e.count; ++i) {
     float weight;
-    float entry = streak_entry(e, i, weight);
-    if (weight > 0.0) sum += weight * texelFetch(streak_profiles, ivec3(texel, 0, int(entry)), 0).r;
+    ivec3 entry = streak_entry(e, i, weight);
+    ivec3 place = ivec3((entry.z + 1) * tile - 1, entry.y, entry.x);
+    if (weight > 0.0) sum += weight * texelFetch(streak_profiles, place, 0).r;
   }
   vec2 elevations = streak_table_nodes.w == 1.0 ? vec2(0.0, abs(angles.y)) : angles.xy;
   float cosine = -(sin(elevations.x) * sin(elevations.y) + cos(elevations.x) * cos(elevations.y) * cos(angles.z));
