@@ -140,9 +140,11 @@ Result<void> RainStage::load() {
     Json layered = {{"pass", "layered_composite"}, {"colour", "colour"}, {"rain_light", "rain_light"}};
     if (set_.wall_hides) layered["depth"] = "depth";
     if (set_.map) layered["occlusion_map"] = "map";
+    layered["parameters"] = {{"shells", set_.layered_shells}};
     table["passes"].push_back(layered);
-    Json cone = layered;
-    cone["pass"] = "double_cone";
+    Json cone = {{"pass", "double_cone"}, {"colour", "colour"}, {"rain_light", "rain_light"}};
+    for (const char* slot : {"depth", "occlusion_map"})
+      if (splat.contains(slot)) cone[slot] = splat[slot];
     table["passes"].push_back(cone);
     Json near = splat;
     near["pass"] = "near_drops";

@@ -23,6 +23,7 @@ struct StageSet {
   bool present = true;           // also make the 8-bit picture
   int path = 0;                  // of rain_cells: how drops are drawn
   bool flakes = false;           // what stands in for undrawn rain is snow: the lamps' light by the flakes' phase
+  int layered_shells = 0;        // of layered_composite: 3 or 4; 0 by the device
   bool draw_rain = true;         // false: the backdrop alone
 };
 

@@ -92,6 +92,29 @@ TEST(LayeredMotion, ScriptsDriveLightning) {
   EXPECT_FLOAT_EQ(street.frame().lightning, 1.0f);
 }
 
+TEST(LayeredMotion, TeleportMovesNothingOn) {
+  Street street;
+  street.run(60);
+  street.registry.get<Transform>(street.camera).position_m.x = 10'000.0f;
+  street.run(1);
+  const double before = street.motion().travelled_m;
+  const glm::dquat turn = street.motion().turn;
+  street.run(3);
+  EXPECT_NEAR(street.motion().travelled_m - before, 3.0 * tick_s * street.frame().speed_mps, 1e-3);
+  EXPECT_NEAR(std::abs(glm::dot(street.motion().turn, turn)), 1.0, 1e-9);
+}
+
+TEST(LayeredMotion, WalkingTiltsTheWay) {
+  Street street;
+  for (int i = 0; i < 30; ++i) {
+    street.registry.get<Transform>(street.camera).position_m.x = 1.5f * float(i * tick_s);
+    street.step();
+  }
+  const FrameLayered layered = street.frame();
+  const glm::dvec3 way(layered.turn * glm::vec3(0.0f, -1.0f, 0.0f));
+  EXPECT_NEAR(way.x / -way.y, -1.5 / std::sqrt(layered.speed_mps * layered.speed_mps - 1.5 * 1.5), 0.02);
+}
+
 TEST(LayeredMotion, TurnIsCarriedWithoutSpinning) {
   // Round a circle of directions and back: no more azimuth than the cone's own angle encloses, and no jump at the pole.
   glm::dquat turn(1.0, 0.0, 0.0, 0.0);
