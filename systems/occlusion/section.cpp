@@ -74,6 +74,7 @@ Result<void> draw_shelter_section(const ChartRun& run, OcclusionStage& stage, co
   const int failed = std::system(fmt::format("gnuplot '{}'", file.string()).c_str());
   std::error_code ignored;
   std::filesystem::remove(file, ignored);
+  if (failed == 0) std::filesystem::remove(csv, ignored);  // nine thousand rows that the picture shows
   if (failed != 0) return failure(fmt::format("gnuplot failed on the section; the figures are in {}", csv.string()));
   return {};
 }

@@ -6,8 +6,9 @@
 
 namespace petrichor {
 
-// Writes occlusion-section.csv (x, height, and the share of the rain kept away by each rung and by rays) and with
-// gnuplot occlusion-section.png and .svg. The stage holds shelter_street(); frame.wind and frame.rain say the weather.
+// Writes occlusion-section.png and .svg: by x and height the share of the rain kept away, by each rung and by rays;
+// without gnuplot occlusion-section.csv alone. The stage holds shelter_street(); frame.wind and frame.rain say the
+// weather.
 Result<void> draw_shelter_section(const ChartRun&, OcclusionStage&, const std::vector<FallTruth>&);
 
 }  // namespace petrichor
