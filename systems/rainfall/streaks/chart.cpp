@@ -212,13 +212,13 @@ LampGrid level_grid(int entries, double lowest_deg) {
 std::vector<Way> ways_to_compare() {
   std::vector<Way> ways;
   for (const StreakGrid g : {StreakGrid{3, 5, 5}, {5, 7, 7}, {7, 9, 9}, {9, 13, 13}, {13, 19, 19}}) {
-    const std::string size = fmt::format("{} entries", g.entries());
+    const std::string size = std::to_string(g.entries());
     ways.push_back({"table", size, {g.light, g.azimuth}, g.view, false, Reading::mended});
     ways.push_back({"nearest", size, level_grid(g.entries(), 0.0), 1, true});
     if (g.view != 7) continue;
-    ways.push_back({"nearest", "no mirrored lamp", level_grid(g.entries(), -90.0), 1, false});
-    ways.push_back({"nearest", "no dropped view", {g.light / 2 + 1, 2 * g.azimuth - 1, 0.0}, g.view, true});
-    ways.push_back({"table", "straight lines of radiance", {g.light, g.azimuth}, g.view, false});
+    ways.push_back({"nearest", "but signed lamp elevation", level_grid(g.entries(), -90.0), 1, false});
+    ways.push_back({"nearest", "but view elevation", {g.light / 2 + 1, 2 * g.azimuth - 1, 0.0}, g.view, true});
+    ways.push_back({"table", "but straight lines of radiance", {g.light, g.azimuth}, g.view, false});
   }
   for (Way& way : ways) {
     way.values.resize(way.views);
@@ -287,7 +287,6 @@ Result<void> chart_streaks(const ChartRun& run) {
   const Errors even = errors([&](const Sample& s, int, double) {
     return Read{sphere_over_lamp(sphere, s.angles), 1.0};
   });
-  const Errors own_even = errors([](const Sample&, int, double own_phase) { return Read{own_phase, 1.0}; });
   const Errors noise = errors([](const Sample& s, int m, double) {  // half the difference of the halves
     double mean = 0.0;
     for (int k = 0; k < truth_moments; ++k) mean += s.truth(k) / truth_moments;
@@ -297,8 +296,8 @@ Result<void> chart_streaks(const ChartRun& run) {
   radiance.effect = bands.effect = "streaks";
   radiance.name = "streaks";
   bands.name = "streaks-bands";
-  radiance.title = "Streaks of a 2 mm drop, table size against error to tracing: radiance";
-  bands.title = "Streaks of a 2 mm drop, table size against error to tracing: bands alone, the mean being right";
+  radiance.title = "Streaks of a 2 mm drop, entries of the table against error to tracing";
+  bands.title = "Streaks of a 2 mm drop, entries of the table against error: bands alone";
   radiance.device = bands.device =
       fmt::format("{} random views x {} lamps x {} moments", truth_views, truth_lamps, truth_moments);
   radiance.x_label = bands.x_label = "size of the table, KiB";
@@ -323,15 +322,6 @@ Result<void> chart_streaks(const ChartRun& run) {
   for (const Way& way : ways)
     add(way.rung, way.label, way.kilobytes(bake),
         errors([&](const Sample& s, int m, double own_phase) { return read(way, bake, s, m, own_phase); }));
-  radiance.points.push_back({"even",
-                             "the drops' own mean radiance",
-                             2.0 * drop_phase_bins * 4.0 / 1024.0,
-                             2.0,
-                             2.0,
-                             own_even.radiance / even.radiance,
-                             0.0,
-                             true,
-                             {{"nearly_level_views", own_even.level / even.level}}});
   if (auto written = write_chart(run.folder, radiance); !written) return written;
   return write_chart(run.folder, bands);
 }
