@@ -189,7 +189,7 @@ void learn_change(DirectorCosts& costs, const std::array<int, effect_count>& fro
       else
         costs.scale[size_from] /= factor;
       for (std::size_t q = resolution_rungs - 1; q-- > 0;)
-        costs.scale[q] = std::clamp(costs.scale[q], 0.05, costs.scale[q + 1]);
+        costs.scale[q] = std::clamp(costs.scale[q], 0.05, 0.97 * costs.scale[q + 1]);
     } else if (costs.trust < 2) {
       const double expected = table.ms[e][to[e]][size_to];
       const double found = std::clamp(expected + share_ms, 0.0, 3.0 * expected + 0.1 * before_ms);

@@ -14,9 +14,10 @@ constexpr double drop_limit = 0.93;   // of the budget: what a choice is meant t
 constexpr double least_gain = 0.004;  // of visible error: for less nobody climbs
 constexpr int wish_frames_needed = 8;
 constexpr double climb_after_s = 0.3, wish_needed_s = 0.2;
-constexpr double failed_within_s = 60.0, first_bar_s = 8.0, longest_bar_s = 600.0, proven_after_s = 120.0;
+constexpr double failed_within_s = 120.0, shortest_bar_s = 4.0, first_bar_s = 8.0, longest_bar_s = 600.0,
+                 proven_after_s = 180.0;
 constexpr double soon_s = 20.0, first_rest_s = 3.0, longest_rest_s = 120.0;
-constexpr double trade_penalty = 0.1;
+constexpr double trade_penalty = 0.1, despair_after_s = 3.0;
 constexpr double much_lighter = 0.85;  // the rest of the frame, for a climb that failed to be tried early
 constexpr int profile_every = 30, profile_soon = 6;
 constexpr std::size_t history_kept = 4096;
@@ -89,13 +90,14 @@ void switch_to(Director& d, std::size_t e, int rung, double fade_s, const char* 
 // What was climbed to a short while ago and has to be left again was a mistake.
 void bar_failed_climb(Director& d, std::size_t e, const CostTable& table) {
   DirectedEffect& effect = d.effects[e];
+  const std::size_t rung = effect.choice.rung;
+  effect.barred_s[rung] = std::max(effect.barred_s[rung], shortest_bar_s);
   if (effect.since_climb_s > failed_within_s) return;
   if (effect.since_climb_s < soon_s && d.since_failure_s > 0.0) {
     d.rested_s = d.rested_s > 0.0 ? std::min(2.0 * d.rested_s, longest_rest_s) : first_rest_s;
     d.rest_s = d.rested_s;
     d.since_failure_s = 0.0;
   }
-  const std::size_t rung = effect.choice.rung;
   effect.bar_s[rung] = effect.bar_s[rung] > 0.0 ? std::min(2.0 * effect.bar_s[rung], longest_bar_s) : first_bar_s;
   effect.barred_s[rung] = effect.bar_s[rung];
   const std::size_t size = d.effects[index(Effect::resolution)].choice.rung;
@@ -128,7 +130,9 @@ void forbid_climbs(const Director& d, Question& q, const CostTable& table) {
     const auto& rungs = d.costs.ladders[e].rungs;
     const std::size_t now = static_cast<std::size_t>(q.now[e]);
     for (std::size_t r = 0; r < rungs.size(); ++r) {
-      const bool cheaper = e == index(Effect::resolution) ? r < now : table.ms[e][r][size] < table.ms[e][now][size];
+      const bool cheaper = e == index(Effect::resolution) ? r < now
+                                                          : table.ms[e][r][size] < table.ms[e][now][size] &&
+                                                                rungs[r].chart_error >= rungs[now].chart_error;
       if (r != now && !cheaper) q.allowed[e][r] = 0;
     }
   }
@@ -286,6 +290,27 @@ bool receive(Director& d, const std::array<bool, effect_count>& appeared) {
   return apply(d, q, choose(q), table, "appeared", appeared);
 }
 
+// Over budget for long, and nothing is thought to help: then what is thought is wrong. What the chart calls cheaper is
+// tried, one effect at a time, sharpness first.
+bool despair(const Director& d, const Question& q, Answer& answer) {
+  if (answer.rungs != q.now || d.regime_s < despair_after_s) return false;
+  const std::size_t size = index(Effect::resolution);
+  for (std::size_t i = 0; i < effect_count; ++i) {
+    const std::size_t e = i == 0 ? size : i - 1;  // resolution is the last of the effects
+    const auto& rungs = d.costs.ladders[e].rungs;
+    std::size_t cheapest = static_cast<std::size_t>(q.now[e]);
+    for (std::size_t r = 0; r < rungs.size(); ++r)
+      if (d.effects[e].free && d.coverage[e] > 0.0 && usable(rungs[r]) &&
+          d.effects[e].since_switch_s >= director_hold_s && rungs[r].chart_ms < rungs[cheapest].chart_ms)
+        cheapest = r;
+    if (cheapest == static_cast<std::size_t>(q.now[e])) continue;
+    answer.rungs[e] = static_cast<int>(cheapest);
+    answer.ms = expected_ms(q, answer.rungs);
+    return true;
+  }
+  return false;
+}
+
 void decide(Director& d, double step_s) {
   const bool over = over_budget(d);
   if (!over && (d.recent_ms.size() < frames_to_know(d, 15.0) || d.regime_s < climb_after_s)) return;
@@ -296,7 +321,9 @@ void decide(Director& d, double step_s) {
     d.wish_s = 0.0;
     d.wish_frames = 0;
     forbid_climbs(d, q, table);
-    apply(d, q, choose(q), table, "over budget");
+    Answer answer = choose(q);
+    const bool at_a_loss = despair(d, q, answer);
+    apply(d, q, answer, table, at_a_loss ? "over budget, and nothing that should help did" : "over budget");
     return;
   }
   if (d.rest_s > 0.0) return;
