@@ -134,7 +134,7 @@ void main() {
     float away = published ? 1e9 : scene_distance(pixel, sqrt(slant2));
     vec4 nearer = extinction * clamp(away - shell_from, vec4(0.0), shell_middle - shell_from);
     vec4 farther = extinction * clamp(away - shell_middle, vec4(0.0), shell_to - shell_middle);
-    float before = extinction * min(away, shell_from.x);
+    float before = extinction * min(away, shell_from.x) * open.x;
     pattern *= open;
     open += open_step;
 #else
