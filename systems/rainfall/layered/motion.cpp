@@ -19,6 +19,11 @@ double wrapped(double metres) {
   return metres - layered_wrap_m * std::floor(metres / layered_wrap_m);
 }
 
+// How much drops of a size add to what is seen to move: the variance of the picture goes with D^4.
+double seen_weight(double drops_per_m3, double diameter_mm) {
+  return drops_per_m3 * diameter_mm * diameter_mm * diameter_mm * diameter_mm;
+}
+
 bool same_sizes(const Emitter& a, const Emitter& b) {
   return a.rain_mm_per_hour == b.rain_mm_per_hour && a.drop_sizes == b.drop_sizes && a.gamma_shape == b.gamma_shape &&
          a.minimum_diameter_mm == b.minimum_diameter_mm && a.maximum_diameter_mm == b.maximum_diameter_mm;
@@ -60,10 +65,10 @@ void share_classes(LayeredMotion& motion, const Emitter& emitter) {
   motion.shares.clear();
   double sum = 0.0;
   const auto classes = make_drop_classes(emitter);
-  for (const DropClass& c : classes) sum += c.drawn ? extinction_per_m(c) : 0.0;
+  for (const DropClass& c : classes) sum += c.drawn ? seen_weight(c.drops_per_m3, c.diameter_mm) : 0.0;
   motion.fall_mps = 0.0;
   for (const DropClass& c : classes) {
-    motion.shares.push_back(c.drawn && sum > 0.0 ? static_cast<float>(extinction_per_m(c) / sum) : 0.0f);
+    motion.shares.push_back(c.drawn && sum > 0.0 ? static_cast<float>(seen_weight(c.drops_per_m3, c.diameter_mm) / sum) : 0.0f);
     motion.fall_mps += motion.shares.back() * c.fall_speed_mps;
   }
 }
@@ -85,7 +90,7 @@ glm::vec3 layered_velocity(const LayeredComposite& settings, const FrameRain& ra
   double weight = 0.0;
   for (const RainClass& c : rain.classes) {
     if (!c.drawn) continue;
-    const double w = double(c.drops_per_m3) * c.diameter_mm * c.diameter_mm;
+    const double w = seen_weight(c.drops_per_m3, c.diameter_mm);
     sum += w * glm::dvec3(c.velocity_mps);
     weight += w;
   }

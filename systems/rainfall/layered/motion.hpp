@@ -27,7 +27,7 @@ struct LayeredMotion {
   bool known = false;
   double time_s = 0.0;
   Emitter emitter;            // that the shares were made for
-  std::vector<float> shares;  // of each class in the extinction of what is drawn
+  std::vector<float> shares;  // of each drawn class in what is seen, by n D^4
   double fall_mps = 0.0;      // mean fall speed by these shares
 };
 
@@ -42,7 +42,7 @@ void extract_layered(const Registry&, Frame&, double time_s, double interpolatio
 // The same from plain values, for bare stages: steady wind and camera from time 0 on. Needs frame.rain.
 FrameLayered make_frame_layered(const LayeredComposite&, const Frame&, double time_s);
 
-// Velocity of the drawn rain, by extinction, as the artist bends it; m/s in the world.
+// Velocity of the drawn rain, by the variance that its drops make (n D^4), as the artist bends it; m/s in the world.
 glm::vec3 layered_velocity(const LayeredComposite&, const FrameRain&);
 
 }  // namespace petrichor

@@ -245,13 +245,13 @@ void draw_published(LayeredGpu& gpu, PassContext& context) {
   program.set("speed", speed);
   program.set("elapsed_s", static_cast<float>(layered.time_s));
   program.set("parallax", layered.parallax);
-  // An artist's choices: drops a hundredth of the picture's height wide at w = 1, six times as long.
-  program.set("cells", 100.0f);
-  program.set("elongation", 6.0f);
+  // An artist's choices: drops a two-hundredth of the picture's height wide at w = 1, eight times as long.
+  program.set("cells", 200.0f);
+  program.set("elongation", 8.0f);
   // "The strength": more drops in stronger rain. Their opacity is chosen so that the picture's mean is the rain's in
   // the open; the mean share of a texel that a drop covers is the normal map's.
   const float depth = frame.rain->share(RainRung::composite) * frame.rain->drawn_extinction_per_m * layered.far_m;
-  const float present = std::clamp(0.1f * std::sqrt(frame.rain->rain_mm_per_hour), 0.05f, 1.0f);
+  const float present = std::clamp(0.02f * std::sqrt(frame.rain->rain_mm_per_hour), 0.02f, 1.0f);
   program.set("present", present);
   program.set("opacity", (1.0f - std::exp(-depth)) / (present * gpu.drop_coverage));
   if (scene) context.bind_texture(0, "depth");
