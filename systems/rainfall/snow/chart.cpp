@@ -13,11 +13,12 @@
 namespace petrichor {
 namespace {
 
-constexpr int instants = 12;  // of the truth's exposure, in which a flake falls by 20 mm
-constexpr int moments = 6;    // pictures, far enough apart to share no flake
-constexpr int repeats = 24;   // frames timed
-constexpr int warm_up = 2;    // compile shaders, make buffers
-constexpr float wall_m = 12.0f;
+constexpr int instants = 8;  // of the truth's exposure, in which a flake falls by 20 mm
+constexpr int moments = 6;   // pictures, far enough apart to share no flake
+constexpr int repeats = 24;  // frames timed
+constexpr int warm_up = 2;   // compile shaders, make buffers
+constexpr float wall_m = 9.0f;
+constexpr float behind_m = 1.2f * wall_m;  // beyond the wall's corners
 constexpr std::array<double, 3> delays_s{1.0 / 20, 3.0 / 20, 7.0 / 20};
 constexpr int across = 12, down = 20;  // shifts, in blocks of `coarse` pixels
 constexpr int coarse = 2;
@@ -35,7 +36,7 @@ StudioScene scene_of(const char* name, float mm_per_hour) {
   s.wind.velocity_mps = {0.3f, 0.0f, 0.0f};
   s.wall_cd_m2 = glm::vec3(0.4f);
   s.wall_distance_m = wall_m;
-  s.lamps_m = {{-1.5f, 1.3f, -6.0f}, {1.6f, 0.8f, -9.0f}};
+  s.lamps_m = {{-1.2f, 1.0f, -5.0f}, {1.4f, 0.5f, -7.5f}};
   return s;
 }
 
@@ -179,8 +180,8 @@ Result<Picture> truth_at(Studio& studio, const StudioScene& scene, const Studio:
     const double earlier = f.camera.exposure_s * (i + 0.5) / instants;
     f.camera.exposure_s = 0.0f;
     f.snow = make_frame_snow(cast.snowfall, wind, f.camera, f.width, f.height, time_s - earlier);
-    f.snow->fade_start_m = 1.2f * wall_m;  // beyond the wall's corners: nothing is left to haze
-    f.snow->drawn_distance_m = 1.21f * wall_m;
+    f.snow->fade_start_m = behind_m;  // nothing is left to haze
+    f.snow->drawn_distance_m = 1.01f * behind_m;
     auto image = studio.draw(f);
     if (!image) return image;
     if (sum.empty()) sum.assign(image->size(), 0.0f);
@@ -196,6 +197,7 @@ struct Truth {
 
 Result<Truth> truth_of(Studio& studio, const StudioScene& scene, std::uint32_t seed, Steps& steps) {
   Studio::Cast cast = studio.cast();
+  cast.snowfall.drawn_distance_m = 1.1f * behind_m;
   cast.snowfall.seed = seed;
   studio.begin(cast);
   std::vector<Picture> images;
@@ -220,6 +222,7 @@ Result<ChartPoint> point(Studio& studio, const Setting& setting, const Truth& tr
                          Steps& steps) {
   Studio::Cast cast = studio.cast();
   cast.techniques.set(Effect::snow, setting.rung);
+  cast.snowfall.drawn_distance_m = 1.1f * behind_m;
   cast.snowfall.maximum_flakes = setting.most_flakes;
   cast.snowfall.cone_jitter = setting.jitter;
   cast.cone.published = setting.published;

@@ -5,6 +5,7 @@
 #include "engine/gpu/objects.hpp"
 #include "engine/gpu/shader.hpp"
 #include "fixture.hpp"
+#include "systems/rainfall/cone/cone.hpp"
 
 namespace petrichor {
 namespace {
@@ -83,6 +84,32 @@ TEST_F(SnowPicture, RungsGiveWayWithTheSameMean) {
     sum += mean_of(light_of(*s, frame)) / 6.0;
   }
   EXPECT_NEAR(sum, expected_transmittance(extinction_of(3.0f), 8.0, view), 0.005);
+}
+
+TEST_F(SnowPicture, TheConeSwaysAndKeepsTheMean) {
+  // Sway moves what the cone shows to and fro, and adds nothing to it; it is over after 64 s as it began.
+  const auto s = wall(30.0f);
+  const SnowView view;
+  const auto draw = [&](double time_s, float jitter) {
+    Frame frame = snow_frame(view, time_s);
+    Snowfall snowfall = snow_of(0.5f);
+    snowfall.cone_jitter = jitter;
+    snow_on(frame, snowfall);
+    frame.snow->techniques.set(Effect::snow, SnowRung::double_cone);
+    set_cone(*frame.snow, DoubleCone{}, frame.camera, 1.0f / 60.0f, 3.0);  // its scroll stands still
+    return light_of(*s, frame);
+  };
+  const auto still = draw(7.0, 0.0f), start = draw(7.0, 1.0f), later = draw(7.3, 1.0f);
+  EXPECT_EQ(still, draw(7.3, 0.0f));
+  EXPECT_GT(difference(start, still), 0.0);
+  EXPECT_GT(difference(start, later), 0.2 * difference(start, still));
+  EXPECT_LT(difference(start, draw(7.0 + snow_clock_s, 1.0f)), 1e-3 * difference(start, later));
+  double mean = 0.0, mean_still = 0.0;
+  for (int i = 0; i < 16; ++i) {
+    mean += mean_of(draw(0.37 * i, 1.0f)) / 16.0;
+    mean_still += mean_of(still) / 16.0;
+  }
+  EXPECT_NEAR(mean, mean_still, 0.0005);
 }
 
 TEST_F(SnowPicture, LampsGiveFlakesWhatTheyGiveHaze) {
