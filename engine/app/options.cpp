@@ -143,7 +143,7 @@ ParsedCommandLine parse_command_line(int argc, char** argv) {
   add_budget(*render_app, render.budget_ms);
 
   auto* bench_app = app.add_subcommand("bench", "Measure speed; one JSON row a case");
-  bench_app->add_option("names", bench.names, "Which benchmarks (default: all): ecs, rain")->type_name("NAME");
+  bench_app->add_option("names", bench.names, "Which benchmarks (default: all): ecs, rain, rungs, near_drops, tariq")->type_name("NAME");
   bench_app->add_option("--drops", bench.drops, "Drops of the rain benchmark")
       ->check(CLI::Range(std::int64_t{1}, std::int64_t{1000000000}))
       ->capture_default_str();

@@ -21,6 +21,8 @@
 #include "systems/rainfall/bench.hpp"
 #include "systems/rainfall/bench_rungs.hpp"
 #include "systems/rainfall/measure.hpp"
+#include "systems/rainfall/near_drops/near_chart.hpp"
+#include "systems/rainfall/sprites/bench.hpp"
 
 namespace petrichor {
 namespace {
@@ -65,7 +67,7 @@ Result<std::vector<std::string>> pick(const std::vector<std::string>& asked, con
 }  // namespace
 
 Result<void> bench(const BenchOptions& options) {
-  const auto names = pick(options.names, {"ecs", "rain", "rungs"}, "benchmark");
+  const auto names = pick(options.names, {"ecs", "rain", "rungs", "near_drops", "tariq"}, "benchmark");
   if (!names) return tl::unexpected(names.error());
   std::vector<BenchRow> rows;
   for (const std::string& name : *names) {
@@ -76,7 +78,9 @@ Result<void> bench(const BenchOptions& options) {
       if (!renderer) return tl::unexpected(renderer.error());
       log_info("{}", (*renderer)->device.renderer);
       const bool software = (*renderer)->device.software;
-      auto measured = name == "rungs" ? bench_rungs(options.width, options.height, options.frames, software,
+      auto measured = name == "tariq" ? bench_tariq(options.drops, options.width, options.height, options.frames, software)
+                      : name == "near_drops" ? bench_near_drops(options.frames, software)
+                      : name == "rungs" ? bench_rungs(options.width, options.height, options.frames, software,
                                                     affordable_drops((*renderer)->device))
                                       : bench_rain(options.drops, options.width, options.height, options.frames, software);
       if (!measured) return tl::unexpected(measured.error());

@@ -6,6 +6,7 @@
 
 #include "systems/rainfall/lists.hpp"
 #include "systems/rainfall/sprites/sprites.hpp"
+#include "systems/rainfall/streaks/gpu.hpp"
 
 namespace petrichor {
 namespace {
@@ -123,14 +124,26 @@ void prepare_drawing(const SpritesGpu& gpu, PassContext& context, const Program&
   program.set("end_sprite", unsigned(end));
 }
 
+// The streak table for those that find a drop's bands and for those that draw them.
+void give_streak_table(SpritesGpu& gpu, PassContext& context, const Program& drawing, bool scene, bool lamps) {
+  const bool software = gpu.sums->software;
+  for (const std::string_view lines :
+       {software ? std::string_view("lines") : "long_lines", software ? std::string_view("capsules") : "long_capsules"})
+    bind_streak_table(*gpu.optics, context.frame, context.program(drop_shader(lines, scene, lamps)));
+  bind_streak_table(*gpu.optics, context.frame, drawing);
+  if (context.frame.rain->sprites.simple_shader) drawing.set("streak_strength", 0.0f);
+}
+
 void draw_listed(SpritesGpu& gpu, PassContext& context) {
   const bool scene = context.has("depth"), lamps = context.frame.uniforms.counts.x > 0, software = gpu.sums->software;
   if (scene) context.bind_texture(0, "depth");
   if (scene && context.has("occlusion_map")) context.bind_texture(OCCLUSION_UNIT, "occlusion_map");
   if (lamps) light_cells(gpu, context);
   bind_streak_lists(*gpu.sums, software);
+  const Program& drawing = context.program(drop_shader(software ? "draw_software" : "draw", scene, lamps));
+  give_streak_table(gpu, context, drawing, scene, lamps);
   if (!software) {
-    prepare_drawing(gpu, context, context.program(drop_shader("draw", scene, lamps)), 0, gpu.capacity);
+    prepare_drawing(gpu, context, drawing, 0, gpu.capacity);
     glBindBuffer(GL_DISPATCH_INDIRECT_BUFFER, gpu.command.id);
     glDispatchComputeIndirect(0);
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT);
@@ -144,9 +157,8 @@ void draw_listed(SpritesGpu& gpu, PassContext& context) {
   constexpr std::uint32_t slice = RAIN_STREAK_CAPACITY;  // all of them may come into one list
   for (std::uint32_t first = 0; first < listed; first += slice) {
     const std::uint32_t end = std::min(listed, first + slice);
-    const Program& program = context.program(drop_shader("draw_software", scene, lamps));
-    prepare_drawing(gpu, context, program, first, end);
-    program.dispatch(static_cast<int>(end - first));
+    prepare_drawing(gpu, context, drawing, first, end);
+    drawing.dispatch(static_cast<int>(end - first));
     draw_sorted_streaks(gpu.command, context, scene, lamps);
   }
 }

@@ -6,6 +6,7 @@ layout(local_size_x = SPRITE_GROUP) in;
 #include "systems/rainfall/streak.glsl"
 #include "systems/rainfall/raster.glsl"
 #include "systems/rainfall/streak_lists.glsl"
+#include "systems/rainfall/streaks/lamp_bands.glsl"
 
 layout(std430, binding = SPRITES_BINDING) readonly buffer Sprites { SpriteGpu sprites[]; };
 uniform uint first_sprite, end_sprite;
@@ -15,20 +16,17 @@ uniform float box_m;
 uniform int cells_across;
 uniform vec2 responses;  // to directional lights, and to point and spot lights: his sliders; 1 is true
 
-vec3 lamps_on(vec3 at) {
+SpriteLightsGpu lights_near(vec3 at) {
   int n = cells_across;
   ivec3 cell = clamp(ivec3(floor((at / box_m + 0.5) * float(n))), ivec3(0), ivec3(n - 1));
-  SpriteLightsGpu here = light_cells[(cell.z * n + cell.y) * n + cell.x];
-  float distance_to_eye = length(at);
-  vec3 sum = vec3(0.0);
-  for (int i = 0; i < RAIN_CELL_LIGHTS; ++i) {
-    if (i >= int(here.count.x)) break;
-    uint pair = here.lights[i >> 1];
-    LightGpu light = lights[(i & 1) == 0 ? pair & 0xffffu : pair >> 16u];
-    float response = light.direction_kind.w == float(LIGHT_DIRECTIONAL) ? responses.x : responses.y;
-    sum += response * lamp_light(light, at, distance_to_eye);
-  }
-  return seen_light(sum, distance_to_eye);
+  return light_cells[(cell.z * n + cell.y) * n + cell.x];
+}
+
+LightGpu light_of(SpriteLightsGpu here, int i) {
+  uint pair = here.lights[i >> 1];
+  LightGpu light = lights[(i & 1) == 0 ? pair & 0xffffu : pair >> 16u];
+  light.intensity_radius.rgb *= light.direction_kind.w == float(LIGHT_DIRECTIONAL) ? responses.x : responses.y;
+  return light;
 }
 #endif
 
@@ -42,11 +40,27 @@ bool draw_sprite(uint index) {
     return false;
   drop_bits = bits;
 #ifdef LAMPS
-  drop_light = lamps_on(s.middle);
+  SpriteLightsGpu here = lights_near(s.middle);
+  float distance_to_eye = length(s.middle);
+  vec3 sum = vec3(0.0);
+  for (int i = 0; i < RAIN_CELL_LIGHTS; ++i) {
+    if (i >= int(here.count.x)) break;
+    sum += lamp_light(light_of(here, i), s.middle, distance_to_eye);
+  }
+  drop_light = seen_light(sum, distance_to_eye);
 #endif
   vec2 span = abs(s.to - s.from);
   float reach = max(span.x, span.y);
   bool capsule = s.radius >= 0.5;
+#ifdef LAMPS
+  float cycles = band_cycles(sprite.place_diameter.w, s.area, s.radius, reach, drop_light);
+  StrongestLamp strongest = StrongestLamp(vec3(0.0, 1.0, 0.0), 0.0);
+  for (int i = 0; i < RAIN_CELL_LIGHTS; ++i) {
+    if (i >= int(here.count.x) || cycles == 0.0) break;
+    compare_lamp(strongest, light_of(here, i), s.middle, distance_to_eye);
+  }
+  streak_bands = bands_of(strongest, cycles, s.middle, sum);
+#endif
 #ifdef SOFTWARE
   if (!capsule && reach < 1.0) draw_point(s.from, s.to, s.depths, s.area);
   else list_streak(s, reach, taps_of(s.area, reach) == 2, drop_light, bits);
