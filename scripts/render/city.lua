@@ -65,7 +65,7 @@ local passes = {
     environment = "environment", rain_light = "rain_light" },
   -- Drops near the eye show the world: captured in six faces (of so many pixels), and those drops.
   { pass = "near_environment", near_environment = "near_environment", shadow_atlas = "shadow_atlas",
-    parameters = { face = 64 } },
+    parameters = { face = 128, face_software = 64 } },
   { pass = "near_drops", colour = "colour", near = "near_drops", near_environment = "near_environment", depth = "depth",
     occlusion_map = "occlusion_map" },
 

@@ -150,7 +150,9 @@ Result<void> RainStage::load() {
     near["pass"] = "near_drops";
     near["colour"] = "colour";
     near["near_environment"] = "near_environment";
-    table["passes"].push_back({{"pass", "near_environment"}, {"near_environment", "near_environment"}});
+    table["passes"].push_back({{"pass", "near_environment"},
+                               {"near_environment", "near_environment"},
+                               {"parameters", {{"face_software", 128}}}});
     table["passes"].push_back(near);
     table["resources"]["snow_light"] = {{"format", "rgba16f"}, {"scale", 1.0 / 16.0}, {"layers", 12}};
     Json snow = {{"pass", "snow_field"}};

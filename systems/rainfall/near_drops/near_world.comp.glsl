@@ -15,7 +15,7 @@ layout(local_size_x = 8, local_size_y = 8) in;
 #include "systems/geometry/gbuffer.glsl"
 layout(rgba16f, binding = 0) writeonly uniform imageCube near_world;
 layout(std430, binding = NEAR_LAMPS_BINDING) readonly buffer NearLamps { NearLampGpu lamps[]; };
-uniform int face_texels, lamp_count;
+uniform int face_texels, capture_texels, lamp_count;  // a side: of the level that is written, of the capture
 uniform float near_m;         // of the capture
 uniform vec3 all_round;       // mean radiance, cd/m2: what surfaces get apart from lamps
 uniform float brightest;      // of surfaces that shine, cd/m2: lamps themselves are drawn from their own intensity
@@ -34,14 +34,16 @@ vec3 direction_of_texel(ivec3 texel) {
 }
 
 #ifdef SHADOWS
-// Of the light lists' lamps, which are relative to the camera, the one that stands here; its tile of the atlas.
-float shadow_of(NearLampGpu lamp, vec3 from_lamp) {
-  for (uint j = 0u; j < chosen.counts.y; ++j) {
-    vec3 apart = chosen.lights[j].position_range.xyz - capture_offset - lamp.position_range.xyz;
-    if (dot(apart, apart) < 1e-4 && chosen.lights[j].cone_shadow.z >= 0.0)
-      return plain_shadow(chosen.lights[j].cone_shadow.z, from_lamp, chosen.lights[j].cone_shadow.w);
+// Of the light lists' lamps, which are relative to the camera, those that stand where ours do: tile of the shadow atlas
+// (or -1) and reach of its map.
+shared vec2 shadows[NEAR_LAMPS];
+
+void find_shadow(uint i) {
+  shadows[i] = vec2(-1.0, 0.0);
+  for (uint j = 0u; int(i) < lamp_count && j < chosen.counts.y; ++j) {
+    vec3 apart = chosen.lights[j].position_range.xyz - capture_offset - lamps[i].position_range.xyz;
+    if (dot(apart, apart) < 1e-4) shadows[i] = chosen.lights[j].cone_shadow.zw;
   }
-  return 1.0;
 }
 #endif
 
@@ -59,11 +61,15 @@ vec3 given(NearLampGpu lamp, vec3 place, out vec3 to_lamp) {
 }
 
 void main() {
+#ifdef SHADOWS
+  find_shadow(gl_LocalInvocationIndex);
+  barrier();
+#endif
   ivec3 texel = ivec3(gl_GlobalInvocationID);
   if (any(greaterThanEqual(texel.xy, ivec2(face_texels)))) return;
   vec3 w = direction_of_texel(texel), unit = normalize(w);
   vec3 strip = face_from_direction(w);
-  ivec2 at = ivec2(strip.xy * float(face_texels)) + ivec2(int(strip.z) * face_texels, 0);
+  ivec2 at = ivec2(strip.xy * float(capture_texels)) + ivec2(int(strip.z) * capture_texels, 0);
   float depth = read_depth(at);
   vec3 place = w * (near_m / max(depth, 1e-7));
   float away = depth > 0.0 ? length(place) : 1e6;
@@ -74,10 +80,10 @@ void main() {
     for (int i = 0; i < lamp_count; ++i) {
       vec3 to_lamp, illuminance = given(lamps[i], place, to_lamp);
       float cosine = dot(surface.normal, to_lamp) * inversesqrt(dot(to_lamp, to_lamp));
-      if (cosine <= 0.0) continue;
-      illuminance *= cosine;
+      illuminance *= max(cosine, 0.0);
+      if (max(illuminance.r, max(illuminance.g, illuminance.b)) < 1e-3) continue;
 #ifdef SHADOWS
-      illuminance *= shadow_of(lamps[i], -to_lamp);
+      if (shadows[i].x >= 0.0) illuminance *= plain_shadow(shadows[i].x, -to_lamp, shadows[i].y);
 #endif
       irradiance += illuminance;
     }

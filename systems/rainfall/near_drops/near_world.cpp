@@ -152,26 +152,32 @@ void light(NearWorld& world, const Frame& frame, const Texture* shadow_atlas, co
   if (shadow_atlas) glBindTextureUnit(6, shadow_atlas->id);
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, NEAR_LAMPS_BINDING, world.lamps.id);
   program.use();
-  program.set("face_texels", world.face_texels);
   program.set("lamp_count", static_cast<int>(lamps.size()));
   program.set("near_m", capture_near_m);
   program.set("brightest", brightest_cd_m2);
   program.set("capture_offset", glm::vec3(world.place_m - frame.camera.position_m));
-  // Twice: what falls on surfaces from all round is the mean of what they and the sky gave at first, without lamps.
-  glm::vec3 all_round(0.0f);
-  for (int bounce = frame.scene ? 0 : 1; bounce < 2; ++bounce) {
+  program.set("capture_texels", world.face_texels);
+  const auto write_level = [&](int level, const glm::vec3& all_round, bool lamp_discs) {
+    const int face = std::max(1, world.face_texels >> level);
+    program.set("face_texels", face);
     program.set("all_round", all_round);
-    program.set("lamp_discs", bounce);
-    glBindImageTexture(0, world.cube.id, 0, GL_TRUE, 0, GL_WRITE_ONLY, GL_RGBA16F);
-    program.dispatch(world.face_texels, world.face_texels, 6);
+    program.set("lamp_discs", int(lamp_discs));
+    glBindImageTexture(0, world.cube.id, level, GL_TRUE, 0, GL_WRITE_ONLY, GL_RGBA16F);
+    program.dispatch(face, face, 6);
     glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_TEXTURE_UPDATE_BARRIER_BIT | GL_FRAMEBUFFER_BARRIER_BIT);
-    glGenerateTextureMipmap(world.cube.id);
-    if (bounce > 0) break;
-    std::array<float, 24> last{};
-    glGetTextureImage(world.cube.id, world.cube.levels - 1, GL_RGBA, GL_FLOAT, sizeof last, last.data());
-    for (int face = 0; face < 6; ++face)
-      all_round += glm::vec3(last[4 * face], last[4 * face + 1], last[4 * face + 2]) / 6.0f;
+  };
+  // First roughly: what falls on surfaces from all round is the mean of what lamps make of them and of the sky.
+  glm::vec3 all_round(0.0f);
+  if (frame.scene) {
+    const int level = std::min(3, world.cube.levels - 1), face = std::max(1, world.face_texels >> level);
+    write_level(level, all_round, false);
+    std::vector<glm::vec4> texels(std::size_t(6) * face * face);
+    glGetTextureImage(world.cube.id, level, GL_RGBA, GL_FLOAT, static_cast<GLsizei>(texels.size() * sizeof(glm::vec4)),
+                      texels.data());
+    for (const glm::vec4& t : texels) all_round += glm::vec3(t) / static_cast<float>(texels.size());
   }
+  write_level(0, all_round, true);
+  glGenerateTextureMipmap(world.cube.id);
   world.lit = true;
   ++world.relights;
 }

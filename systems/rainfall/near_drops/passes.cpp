@@ -216,7 +216,7 @@ std::vector<PassOffer> near_drops_passes(std::shared_ptr<RainOptics>) {
   offers[0].name = "near_environment";
   offers[0].meaning = "the world captured in six faces at the camera, for drops near the eye";
   offers[0].slots = {{"near_environment", SlotAccess::write}, {"shadow_atlas", SlotAccess::read, true}};
-  offers[0].parameters = {{"face", 128.0}};
+  offers[0].parameters = {{"face", 128.0}, {"face_software", 64.0}};  // texels a side
   const std::string variant = "MATERIAL_VARIANT " + std::to_string(static_cast<unsigned>(variant_general));
   offers[0].shaders = {
       {"surfaces", {{"systems/geometry/gbuffer.vert.glsl", "systems/geometry/gbuffer.frag.glsl"}, {variant}}},
@@ -225,7 +225,10 @@ std::vector<PassOffer> near_drops_passes(std::shared_ptr<RainOptics>) {
   offers[0].wanted = wanted;
   offers[0].execute = [gpu](PassContext& context) {
     const bool shadows = context.has("shadow_atlas");
-    update_near_world(gpu->world, context.frame, static_cast<int>(context.parameter("face")),
+    if (!gpu->device_known) gpu->software = is_software_gl();
+    gpu->device_known = true;
+    update_near_world(gpu->world, context.frame,
+                      static_cast<int>(context.parameter(gpu->software ? "face_software" : "face")),
                       context.frame.rain->near_drops.step_m, shadows ? &context.texture("shadow_atlas") : nullptr,
                       {context.program("surfaces"), context.program(shadows ? "light_shadows" : "light")});
   };
