@@ -221,6 +221,7 @@ Result<void> play(const PlayOptions& options) {
     json["budget_ms"] = state.directed ? state.budget_ms : 0.0f;
     json["director"] = direction.report();
     json["director_changes"] = direction.changes();
+    json["frames_ms"] = stats.frame_ms;  // each of them, to see what a change cost
     return write_whole_file(options.stats, json.dump(2) + "\n");
   }
   return {};

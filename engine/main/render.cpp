@@ -161,6 +161,7 @@ Result<void> render(const RenderOptions& options) {
       json["budget_ms"] = options.budget_ms;
       json["director"] = direction->report();
       json["director_changes"] = direction->changes();
+      json["frames_ms"] = stats.frame_ms;  // each of them, to see what a change cost
     }
     if (auto written = write_whole_file(options.stats, json.dump(2) + "\n"); !written) return written;
   }
