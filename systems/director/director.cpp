@@ -303,7 +303,8 @@ bool despair(const Director& d, const Question& q, Answer& answer) {
       if (d.effects[e].free && d.coverage[e] > 0.0 && usable(rungs[r]) &&
           d.effects[e].since_switch_s >= director_hold_s && rungs[r].chart_ms < rungs[cheapest].chart_ms)
         cheapest = r;
-    if (cheapest == static_cast<std::size_t>(q.now[e])) continue;
+    const double saving_ms = rungs[static_cast<std::size_t>(q.now[e])].chart_ms - rungs[cheapest].chart_ms;
+    if (saving_ms <= 0.15 * d.costs.ladders[size].rungs.back().chart_ms) continue;  // of a charted frame: no help
     answer.rungs[e] = static_cast<int>(cheapest);
     answer.ms = expected_ms(q, answer.rungs);
     return true;
