@@ -88,6 +88,12 @@ ConeFlow snow_flow(const ConeMotion& m, const SnowMotion& snow, const Snowfall& 
   return flow;
 }
 
+void prepare(const DoubleCone& set, float mm_per_hour, bool snow) {
+  const ConeKinds kinds = cone_kinds(set.texture, mm_per_hour, snow);
+  shared_cone_textures(kinds.first);
+  shared_cone_textures(kinds.second);
+}
+
 }  // namespace
 
 void simulate_cone(Registry& registry, double time_s, double step_s) {
@@ -119,6 +125,9 @@ void simulate_cone(Registry& registry, double time_s, double step_s) {
 
 void extract_cone(const Registry& registry, Frame& frame, double time_s) {
   const Source source = source_of(registry);
+  // By the time that somebody falls back on the cone its textures are there.
+  if (frame.rain) prepare(source.set, frame.rain->rain_mm_per_hour, false);
+  if (frame.snow) prepare(source.set, frame.snow->snow_mm_per_hour, true);
   const FrameCamera& camera = frame.camera;
   const auto* motion = source.emitter || source.snow ? registry.find<ConeMotion>(source.entity) : nullptr;
   if (frame.rain) {

@@ -60,7 +60,8 @@ const ConeTextureGpu& texture_of(ConeGpu& gpu, ConeTexture kind) {
   auto& found = gpu.textures[static_cast<std::size_t>(kind)];
   if (found) return *found;
   found.emplace();
-  const ConeTextureSet set = make_cone_textures(kind);
+  const auto made = shared_cone_textures(kind);
+  const ConeTextureSet& set = made.get();
   found->full_per_m3 = set.full_per_m3;
   found->texture =
       make_texture_2d_array(cone_texture_size, cone_texture_size, cone_layers, GL_RGBA8, cone_texture_levels);
@@ -169,7 +170,8 @@ void set_layers(ConeGpu& gpu, const PassContext& context, const Program& program
     const FrameSnow& snow = *frame.snow;
     glm::vec4 jitter, waves;
     for (int i = 0; i < cone_layers; ++i) {
-      jitter[i] = cone.published ? 0.0f : snow.cone_jitter_m * tiles[i] / static_cast<float>(cone_layout(flakes)[i].radius_m);
+      jitter[i] =
+          cone.published ? 0.0f : snow.cone_jitter_m * tiles[i] / static_cast<float>(cone_layout(flakes)[i].radius_m);
       waves[i] = std::max(1.0f, std::floor(0.08f / std::max(jitter[i], 1e-3f)));
     }
     program.set("jitter", jitter);

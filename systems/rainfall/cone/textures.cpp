@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <mutex>
 
 #include "engine/core/random.hpp"
 #include "systems/rainfall/drop_physics.hpp"
@@ -29,8 +30,8 @@ double snow_density(double mm) {
   return density(sizes, mm);
 }
 ConeParticle flake(double mm) {
-  const double diameter = diameter_of_melted_mm(mm);
-  return {diameter, flake_area_mm2(diameter), flake_speed_mps(diameter)};
+  const double diameter = diameter_of_melted_mm(mm), area = flake_area_mm2(diameter);
+  return {2.0 * std::sqrt(area / M_PI), area, flake_speed_mps(diameter)};  // an opaque disc of that area
 }
 
 struct Streak {
@@ -280,6 +281,15 @@ ConeTextureSet make_cone_textures(ConeTexture texture, std::uint32_t seed) {
   for (int i = 0; i < cone_layers; ++i)
     set.tiles[i] = make_tile(particles, sizes, i, seed + 0x9e37u * static_cast<std::uint32_t>(texture));
   return set;
+}
+
+std::shared_future<ConeTextureSet> shared_cone_textures(ConeTexture texture) {
+  static std::mutex mutex;
+  static std::array<std::shared_future<ConeTextureSet>, 5> made;
+  const std::lock_guard lock(mutex);
+  auto& one = made[static_cast<std::size_t>(texture)];
+  if (!one.valid()) one = std::async(std::launch::async, [texture] { return make_cone_textures(texture); }).share();
+  return one;
 }
 
 }  // namespace petrichor
