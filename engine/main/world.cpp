@@ -170,7 +170,7 @@ Result<void> World::apply_options(const SubjectOptions& options) {
   }
   // Needed unless streaks are even.
   if (techniques_[Effect::streaks].rung != static_cast<std::uint8_t>(StreakRung::even))
-    if (auto table = shared_streak_table(); !table) log_warn("{}", table.error().message);
+    if (auto table = shared_streak_table(); !table) return tl::unexpected(table.error());
   return {};
 }
 

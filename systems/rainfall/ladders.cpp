@@ -1,5 +1,7 @@
 #include "systems/rainfall/ladders.hpp"
 
+#include <cmath>
+
 #include "systems/frame.hpp"
 
 namespace petrichor {
@@ -34,7 +36,11 @@ Ladder rainfall_ladder() {
        "drop_field, with drops near the eye showing the world refracted (Rana)",
        {"rain_cells", "rain_splat", "rain_composite", "near_environment", "near_drops"}},
   };
-  l.coverage = [](const Frame& frame) { return rains(frame) ? 1.0 : 0.0; };
+  // Light rain leaves most of the picture alone: an artist's scale, two thirds of it at 5 mm/h.
+  l.coverage = [](const Frame& frame) {
+    constexpr double most_of_it_mm_per_hour = 5.0;
+    return rains(frame) ? 1.0 - std::exp(-frame.rain->rain_mm_per_hour / most_of_it_mm_per_hour) : 0.0;
+  };
   return l;
 }
 
@@ -43,8 +49,8 @@ Ladder snow_ladder() {
   l.effect = Effect::snow;
   l.name = "snow";
   l.meaning = "falling snow";
-  l.truth = "every flake, the mean of 64 instants of the exposure";
-  l.error_measure = "mean and deviation over time of blocks of pixels; no snow at all: 1";
+  l.truth = "every flake, the mean of 6 instants of the exposure";
+  l.error_measure = "mean and deviation of blocks of pixels, spectrum, and motion; no snow at all: 1";
   l.rungs = {{"fog", "no single flakes: their haze alone", {}},
              {"double_cone", "textures of flakes scrolled on a double cone about the camera", {"snow_light", "snow_cone"}},
              {"field", "every flake, swaying and tumbling", {"snow_cells", "snow_field", "snow_composite"}}};
@@ -58,10 +64,10 @@ Ladder streaks_ladder() {
   l.name = "streaks";
   l.meaning = "light along the streak of an oscillating drop";
   l.truth = "traced oscillating drops (Beard and Chuang's shapes, modes (2,0) and (3,1))";
-  l.error_measure = "root mean square radiance along streaks, relative to even streaks";
-  l.rungs = {{"even", "one radiance along the streak", {"rain_splat"}},
-             {"nearest", "the nearest entries of the streak table (as Tariq 2007 reads it)", {"rain_splat"}},
-             {"table", "the streak table, interpolated in all three angles", {"rain_splat"}}};
+  l.error_measure = "root mean square of radiance over its mean along streaks; even streaks: 1";
+  l.rungs = {{"even", "one radiance along the streak", {"rain_splat"}, 0.0, 1.0},
+             {"nearest", "the nearest entries of the streak table (as Tariq 2007 reads it)", {"rain_splat"}, 0.0, 1.12},
+             {"table", "the streak table, interpolated in all three angles", {"rain_splat"}, 0.0, 0.865}};
   l.coverage = [](const Frame& frame) { return draws_field(frame) ? 0.1 : 0.0; };
   l.directed = false;
   return l;
@@ -74,9 +80,9 @@ Ladder near_drops_ladder() {
   l.meaning = "what drops near the eye show of the world; of rainfall=near_drops";
   l.truth = "traced drops in the same environment";
   l.error_measure = "root mean square radiance of streaks; drops of one colour: 1";
-  l.rungs = {{"off", "drops of one colour", {}},
-             {"maps", "a map of directions per drop, its column means kept per cell (Rana)", {"near_environment", "near_drops"}},
-             {"closed_form", "the deviation of a sphere as a curve, one look-up a ray", {"near_environment", "near_drops"}}};
+  l.rungs = {{"off", "drops of one colour", {}, 0.0, 1.0},
+             {"maps", "a map of directions per drop, its column means kept per cell (Rana)", {"near_environment", "near_drops"}, 15.0, 0.92},
+             {"closed_form", "the deviation of a sphere as a curve, one look-up a ray", {"near_environment", "near_drops"}, 19.0, 0.26}};
   l.coverage = [](const Frame& frame) {
     return rains(frame) && frame.rain->share(RainRung::near_drops) > 0.0f ? 0.05 : 0.0;
   };

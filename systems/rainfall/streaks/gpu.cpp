@@ -52,7 +52,7 @@ Result<std::shared_ptr<const StreakTable>> shared_streak_table() {
   const auto file = find_data("content/streaks.exr");
   if (!file)
     return failure(file.error().message +
-                   "; the build bakes it, and so does `petrichor bake streaks`; without it draw with --technique "
+                   " The build bakes it, and so does `petrichor bake streaks`; without it draw with --technique "
                    "streaks=even");
   auto table = load_streak_table(file->string());
   if (!table) return tl::unexpected(table.error());

@@ -35,6 +35,20 @@ TEST(Options, WithoutABudgetTheDirectorRests) {
   EXPECT_EQ(std::get<PlayOptions>(*parse({"play", "--budget", "16"}).options).budget_ms, 16.0);
 }
 
+TEST(Options, BakeTakesItsSizes) {
+  const auto parsed = parse({"bake", "streaks", "--out", "s.exr", "--views", "5", "--rays", "1000", "--prolate", "0.2"});
+  ASSERT_TRUE(parsed.options);
+  const auto& bake = std::get<BakeOptions>(*parsed.options);
+  EXPECT_EQ(bake.out, "s.exr");
+  EXPECT_EQ(bake.views, 5);
+  EXPECT_EQ(bake.lights, 0);
+  EXPECT_EQ(bake.rays, 1000);
+  EXPECT_EQ(bake.prolate, 0.2);
+  for (const auto& words : std::vector<std::vector<std::string>>{
+           {"bake"}, {"bake", "bread"}, {"bake", "streaks", "--views", "1"}, {"bake", "streaks", "--prolate", "nan"}})
+    EXPECT_EQ(parse(words).exit_code, exit_wrong_call);
+}
+
 TEST(Options, WrongCallsExitWithTwo) {
   for (const std::vector<std::string>& words :
        std::vector<std::vector<std::string>>{{},
