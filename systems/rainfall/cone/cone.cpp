@@ -105,7 +105,7 @@ double published_elongation(double s_streak, double s_f, double c_pixel, double 
 
 ConeKinds cone_kinds(ConeTexture asked, float mm_per_hour, bool snow) {
   if (asked != ConeTexture::automatic) return {asked, asked, 0.0f};
-  const float from = snow ? 0.7f : 2.0f, to = snow ? 2.5f : 8.0f;
+  const float from = snow ? 1.0f : 3.0f, to = snow ? 1.7f : 5.0f;
   const float share = std::clamp(std::log(std::max(mm_per_hour, 1e-3f) / from) / std::log(to / from), 0.0f, 1.0f);
   const ConeTexture fine = snow ? ConeTexture::snow_fine : ConeTexture::drizzle;
   const ConeTexture coarse = snow ? ConeTexture::snow_coarse : ConeTexture::rain;
