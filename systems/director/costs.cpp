@@ -10,7 +10,7 @@ namespace {
 constexpr std::size_t resolution_effect = static_cast<std::size_t>(Effect::resolution);
 constexpr std::size_t full_size = static_cast<std::size_t>(ResolutionRung::full);
 constexpr double least_chart_ms = 1e-4;  // of smaller figures no ratio is made
-constexpr double wildest_ratio = 8.0;    // an effect's ratio to the chart against that of the whole frame
+constexpr double wildest_ratio = 5.0;    // an effect's ratio to the chart against that of the whole frame
 constexpr double least_rest = 0.1;       // of a frame: there is always something besides the effects
 
 void add(CostSamples& samples, double ms) {
@@ -115,6 +115,10 @@ CostTable cost_table(const DirectorCosts& costs, const Techniques& techniques,
           if (sizes[other].count && (nearest == resolution_rungs || away(other) < away(nearest))) nearest = other;
         }
         if (nearest != resolution_rungs) ms = median(sizes[nearest]) * costs.scale[q] / costs.scale[nearest];
+        // What was measured under another load must not bar a rung for ever; the one that is drawn is known.
+        const double charted_ms = ladder.rungs[r].chart_ms * costs.scale[q] * by_frame;
+        if (charted_ms > least_chart_ms && r != techniques[ladder.effect].rung)
+          ms = std::min(ms, wildest_ratio * charted_ms);
         table.ms[e][r][q] = ms;
       }
     of_effects_ms += table.ms[e][techniques[ladder.effect].rung][size];
