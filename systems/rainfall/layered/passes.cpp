@@ -169,7 +169,6 @@ void set_cells(const Program& program, const Frame& frame, const Cells& c) {
   program.set("drop_m", static_cast<float>(c.drop.diameter_m));
   program.set("turned", c.turned);
   program.set("salt", frame.rain->seed * 0x9e3779b9u);
-  program.set("shell_count", c.shells);
   for (int i = 0; i < c.shells; ++i) {
     const float from = c.edges_m[i], to = c.edges_m[i + 1];
     program.set(indexed("shells", i), glm::vec4(from, to - from, c.opacity[i] * c.contrast[i], c.drops[i]));
@@ -283,7 +282,7 @@ void draw(LayeredGpu& gpu, PassContext& context) {
   // Drops nearer than a metre show the world in them where they are a pixel wide.
   const bool scene = context.has("depth"),
              normals = context.has("environment") && cells.drop.diameter_m > cells.pixel_rad * layered_edges_m[0];
-  std::string name = "layers";
+  std::string name = shells == 3 ? "layers_3" : "layers";
   if (normals) name += "_normals";
   if (cells.turning) name += "_turning";
   const Program& program = context.program(name);
@@ -321,15 +320,19 @@ std::vector<PassOffer> layered_passes(std::shared_ptr<RainOptics> optics) {
   offer.parameters = {{"shells", 0.0}};
   const std::string folder = "systems/rainfall/layered/";
   const std::string layers = folder + "layered_composite.comp.glsl", light = folder + "shell_light.comp.glsl";
-  offer.shaders = {{"layers", {{layers}, {}}},
-                   {"layers_normals", {{layers}, {"NORMALS"}}},
-                   {"layers_turning", {{layers}, {"TURNING"}}},
-                   {"layers_normals_turning", {{layers}, {"NORMALS", "TURNING"}}},
-                   {"published", {{folder + "layered_published.comp.glsl"}, {}}},
-                   {"published_normals", {{folder + "layered_published.comp.glsl"}, {"NORMALS"}}},
-                   {"blur", {{folder + "layered_blur.comp.glsl"}, {}}},
-                   {"light", {{light}, {}}},
-                   {"light_environment", {{light}, {"ENVIRONMENT"}}}};
+  for (int bits = 0; bits < 8; ++bits) {
+    std::string name = bits & 1 ? "layers_3" : "layers";
+    std::vector<std::string> defines;
+    if (bits & 1) defines.emplace_back("SHELLS 3");
+    if (bits & 2) defines.emplace_back("NORMALS"), name += "_normals";
+    if (bits & 4) defines.emplace_back("TURNING"), name += "_turning";
+    offer.shaders[name] = {{layers}, defines};
+  }
+  offer.shaders.insert({{"published", {{folder + "layered_published.comp.glsl"}, {}}},
+                        {"published_normals", {{folder + "layered_published.comp.glsl"}, {"NORMALS"}}},
+                        {"blur", {{folder + "layered_blur.comp.glsl"}, {}}},
+                        {"light", {{light}, {}}},
+                        {"light_environment", {{light}, {"ENVIRONMENT"}}}});
   offer.shaders["shelter"] = {{folder + "shell_shelter.comp.glsl"}, {}};
   offer.wanted = wanted;
   offer.execute = [gpu](PassContext& context) { draw(*gpu, context); };
