@@ -81,8 +81,16 @@ Ladder near_drops_ladder() {
   l.truth = "traced drops in the same environment";
   l.error_measure = "root mean square radiance of streaks; drops of one colour: 1";
   l.rungs = {{"off", "drops of one colour", {}, 0.0, 1.0},
-             {"maps", "a map of directions per drop, its column means kept per cell (Rana)", {"near_environment", "near_drops"}, 15.0, 0.92},
-             {"closed_form", "the deviation of a sphere as a curve, one look-up a ray", {"near_environment", "near_drops"}, 19.0, 0.26}};
+             {"maps",
+              "a map of directions per drop, its column means kept per cell (Rana)",
+              {"near_environment", "near_drops"},
+              15.0,
+              0.92},
+             {"closed_form",
+              "the deviation of a sphere as a curve, one look-up a ray",
+              {"near_environment", "near_drops"},
+              19.0,
+              0.26}};
   l.coverage = [](const Frame& frame) {
     return rains(frame) && frame.rain->share(RainRung::near_drops) > 0.0f ? 0.05 : 0.0;
   };
