@@ -43,6 +43,7 @@ void main() {
     }
     maps[texel * uint(NEAR_MAP_WORDS) + uint(k)] = packSnorm2x16(octahedral(w));
   }
-  // Outside the disc: nothing.
-  maps[texel * uint(NEAR_MAP_WORDS) + 4u] = length(q) < 1.0 + 0.7 / float(map_pixels) ? packUnorm4x8(sqrt(shares)) : 0u;  // small shares keep more of themselves so
+  // Outside the disc nothing. Small shares keep more of themselves as roots.
+  bool on_disc = length(q) < 1.0 + 0.7 / float(map_pixels);
+  maps[texel * uint(NEAR_MAP_WORDS) + 4u] = on_disc ? packUnorm4x8(sqrt(shares)) : 0u;
 }

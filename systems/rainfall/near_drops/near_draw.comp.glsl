@@ -98,7 +98,8 @@ void main() {
   if (len < 0.5) {  // stands still: a disc with the edge of a pixel
     vec2 centre = 0.5 * (from + to);
     kept *= r * r / (r * r + 0.0833333);  // whose edge adds to its area
-    ivec2 low = ivec2(max(floor(centre - r - 1.0), 0.0)), high = ivec2(min(ceil(centre + r + 1.0), frame.size.xy - 1.0));
+    ivec2 low = ivec2(max(floor(centre - r - 1.0), 0.0));
+    ivec2 high = ivec2(min(ceil(centre + r + 1.0), frame.size.xy - 1.0));
     int wide = high.x - low.x + 1, pixels = max(wide, 0) * max(high.y - low.y + 1, 0);
     for (int i = lane; i < pixels; i += NEAR_LANES) {
       ivec2 pixel = low + ivec2(i % wide, i / wide);

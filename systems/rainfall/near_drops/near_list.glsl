@@ -5,7 +5,10 @@
 #include "systems/rainfall/near_drops/near_shared.h"
 
 layout(std430, binding = NEAR_LIST_BINDING) readonly buffer NearList { NearDropGpu drops[]; };
-layout(std430, binding = NEAR_COMMAND_BINDING) readonly buffer NearCommand { uint command[9]; uint count, cells_wanted; };
+layout(std430, binding = NEAR_COMMAND_BINDING) readonly buffer NearCommand {
+  uint command[9];
+  uint count, cells_wanted;
+};
 uniform uint capacity;
 
 // The picture's axes in the world.

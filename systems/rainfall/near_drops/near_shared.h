@@ -25,7 +25,8 @@ using glm::vec4;
 #define NEAR_ROW 64          // work groups along x of the indirect dispatches
 #define NEAR_LAMPS 64
 #define NEAR_CUBE_M 10.0f    // edge of the huge cube of maps
-#define NEAR_MAP_WORDS 5     // of a map's pixel: four directions (octahedral, 16 bits each way), four square roots of shares, 8 bits
+// Of a map's pixel: four directions (octahedral, 16 bits each way), four square roots of shares of 8 bits.
+#define NEAR_MAP_WORDS 5
 #define NEAR_DEPTH_ONE 65536.0f
 #define NEAR_RADIANCE_ONE 131072.0f
 #define NEAR_RADIANCE_MOST 1024.0f  // output units; times an optical depth of 3.9 at most: seven such drops fit a pixel

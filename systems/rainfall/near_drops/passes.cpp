@@ -254,14 +254,23 @@ std::vector<PassOffer> near_drops_passes(std::shared_ptr<RainOptics>) {
   return offers;
 }
 
+namespace {
+
+// By way of a copy: a driver may move a buffer that is read into the computer's memory, where atomics are slow.
+void read_copy(const Buffer& buffer, void* data, std::size_t bytes, std::size_t offset = 0) {
+  const Buffer copy = make_buffer(bytes);
+  glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+  glCopyNamedBufferSubData(buffer.id, copy.id, static_cast<GLintptr>(offset), 0, static_cast<GLsizeiptr>(bytes));
+  read_buffer(copy, data, bytes);
+}
+
+}  // namespace
+
 NearStats near_stats() {
   const auto gpu = newest.lock();
   if (!gpu) return {};
   Command command;
-  if (gpu->command.bytes >= sizeof command) {
-    glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
-    read_buffer(gpu->command, &command, sizeof command);
-  }
+  if (gpu->command.bytes >= sizeof command) read_copy(gpu->command, &command, sizeof command);
   return {gpu->world.captures, gpu->world.relights, std::min(command.count, gpu->capacity), command.cells_wanted};
 }
 
@@ -271,9 +280,9 @@ NearListed read_near_list() {
   const NearStats stats = near_stats();
   if (!gpu || stats.drops == 0) return listed;
   listed.drops.resize(stats.drops);
-  read_buffer(gpu->list, listed.drops.data(), listed.drops.size() * sizeof(NearDropGpu));
+  read_copy(gpu->list, listed.drops.data(), listed.drops.size() * sizeof(NearDropGpu));
   std::vector<glm::uvec2> packed(std::size_t(stats.drops) * NEAR_COLUMNS);
-  read_buffer(gpu->profiles, packed.data(), packed.size() * sizeof(glm::uvec2));
+  read_copy(gpu->profiles, packed.data(), packed.size() * sizeof(glm::uvec2));
   const auto colour = [](const glm::uvec2& p) {
     return glm::vec3(glm::unpackHalf2x16(p.x), glm::unpackHalf2x16(p.y).x);
   };
@@ -284,7 +293,7 @@ NearListed read_near_list() {
     const NearDropGpu& drop = listed.drops[i];
     if (drop.bits.y == 0) continue;
     const std::size_t area = row.size() * row.size();
-    read_buffer(gpu->images, row.data(), row.size() * 8, ((drop.bits.y - 1) * (area + row.size()) + area) * 8);
+    read_copy(gpu->images, row.data(), row.size() * 8, ((drop.bits.y - 1) * (area + row.size()) + area) * 8);
     const int n = static_cast<int>(drop.place.w), fine = 64 / n;
     for (int c = 0; c < n; ++c) {
       glm::vec3 sum(0.0f);
