@@ -14,8 +14,8 @@ local walker = world.spawn {
   transform = { position_m = ground + vec3(0, 1.7, 0) },
 }
 
--- Keys 1 to 4; anything else may emit the same events.
-local presets = { "drizzle", "rain", "downpour", "dry" }
+-- Keys 1 to 5; anything else may emit the same events.
+local presets = { "drizzle", "rain", "downpour", "dry", "snow" }
 for key, name in pairs(presets) do
   on("key:" .. key, function() emit("weather:" .. name) end)
   on("weather:" .. name, function() weather.change(night.weather, name, 4) end)
