@@ -28,7 +28,7 @@ std::size_t index(Effect effect) {
 
 // The less even the frames, the more of them and the more room a climb needs.
 double climb_limit(const Director& d) {
-  return 0.86 - 0.2 * (director_spread(d) - 1.0);
+  return 0.86 - 0.15 * (director_spread(d) - 1.0);
 }
 std::size_t frames_to_know(const Director& d, double least) {
   return static_cast<std::size_t>(std::clamp(least + 100.0 * (director_spread(d) - 1.05), least, 35.0));
@@ -345,7 +345,7 @@ void decide(Director& d, double step_s) {
 }  // namespace
 
 double director_spread(const Director& d) {
-  constexpr double unknown = 1.15, least = 1.04, most = 1.6;
+  constexpr double unknown = 1.15, least = 1.04, most = 1.4;
   constexpr std::size_t enough = 30;
   if (d.unevenness.size() < enough) return unknown;
   std::vector<double> sorted = d.unevenness;
