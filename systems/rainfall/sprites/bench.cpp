@@ -185,11 +185,15 @@ class TariqPath {
     const std::string folder = "systems/rainfall/sprites/tariq_";
     const auto animate = path->library_.load({{folder + "animate.vert.glsl"}, {}});
     if (!animate) return tl::unexpected(animate.error());
-    const auto draw =
-        path->library_.load({{folder + "draw.vert.glsl", folder + "draw.geom.glsl", folder + "draw.frag.glsl"}, {}});
-    if (!draw) return tl::unexpected(draw.error());
+    for (const bool simple : {false, true}) {
+      std::vector<std::string> defines;
+      if (simple) defines.push_back("SIMPLE");
+      const auto draw = path->library_.load(
+          {{folder + "draw.vert.glsl", folder + "draw.geom.glsl", folder + "draw.frag.glsl"}, defines});
+      if (!draw) return tl::unexpected(draw.error());
+      (simple ? path->draw_simple_ : path->draw_) = *draw;
+    }
     path->animate_ = *animate;
-    path->draw_ = *draw;
     path->textures_ = make_streak_textures(370);
     path->colour_ = make_texture_2d(weather.width, weather.height, GL_RGBA16F);
     const std::array<GLuint, 1> colours{path->colour_.id};
@@ -215,28 +219,27 @@ class TariqPath {
     current_ = 0;
   }
 
-  Spans run(int frames) {
-    Spans spans;
-    const int total = warm_up + frames + (software_ ? 0 : 8);  // GPU times come some frames late
-    for (int i = 0; i < total; ++i) {
-      Frame frame = weather_.frame(10.0 + i / 60.0, RainRung::drop_field);
-      finish_frame(frame);
-      frame_gpu_.upload(frame);
-      bind_rain_optics(optics_, frame);
-      clear_texture(colour_, {0.0f, 0.0f, 0.0f, 1.0f});
-      timer_.begin_frame(true);
-      timer_.begin("animate");
-      animate();
-      timer_.end();
-      timer_.begin("draw");
-      draw(frame);
-      timer_.end();
-      timer_.end_frame();
-      glFinish();
-      const std::vector<Timing> timings = timer_.collect();
-      if (i >= warm_up) spans.add(timings);
-    }
-    return spans;
+  void step(int i) {
+    Frame frame = weather_.frame(10.0 + i / 60.0, RainRung::drop_field);
+    finish_frame(frame);
+    frame_gpu_.upload(frame);
+    bind_rain_optics(optics_, frame);
+    clear_texture(colour_, {0.0f, 0.0f, 0.0f, 1.0f});
+    timer_.begin_frame(true);
+    timer_.begin("animate");
+    animate();
+    timer_.end();
+    timer_.begin("draw_simple");
+    draw(frame, *draw_simple_);
+    timer_.end();
+    clear_texture(colour_, {0.0f, 0.0f, 0.0f, 1.0f});
+    timer_.begin("draw");
+    draw(frame, *draw_);
+    timer_.end();
+    timer_.end_frame();
+    glFinish();
+    const std::vector<Timing> timings = timer_.collect();
+    if (i >= warm_up) spans.add(timings);
   }
 
   // Whether particles have fallen since they were spawned: the feedback works.
@@ -258,6 +261,8 @@ class TariqPath {
     return pixels;
   }
   bool gpu_times() const { return timer_.gpu_times_are_real(); }
+
+  Spans spans;
 
  private:
   TariqPath(const Weather& weather, bool software) : weather_(weather), software_(software), timer_(software) {}
@@ -281,14 +286,13 @@ class TariqPath {
     current_ = 1 - current_;
   }
 
-  void draw(const Frame& frame) {
+  void draw(const Frame& frame, const Program& program) {
     glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_);
     glViewport(0, 0, frame.width, frame.height);
     glBindVertexArray(vertices_);
     glVertexArrayVertexBuffer(vertices_, 0, buffers_[current_].id, 0, sizeof(Particle));
-    draw_->use();
-    draw_->set("distances", glm::vec3(nearest_m, 1e6f, 1e6f));
-    draw_->set("texture_layers", static_cast<float>(textures_.layers));
+    program.use();
+    program.set("distances", glm::vec3(nearest_m, 1e6f, 1e6f));
     glBindTextureUnit(0, textures_.id);
     glEnable(GL_BLEND);
     glBlendFuncSeparate(GL_ONE, GL_ONE_MINUS_SRC_ALPHA, GL_ZERO, GL_ONE);
@@ -306,6 +310,7 @@ class TariqPath {
   RainOptics optics_;
   const Program* animate_ = nullptr;
   const Program* draw_ = nullptr;
+  const Program* draw_simple_ = nullptr;
   Texture textures_, colour_;
   Framebuffer framebuffer_;
   VertexArray vertices_;
@@ -315,42 +320,63 @@ class TariqPath {
   GLsizei count_ = 0;
 };
 
-struct StageRun {
-  Spans spans;
-  std::uint32_t drops = 0;
-  double mean_light = 0.0;
-};
-
 double mean_light(const std::vector<float>& light) {
   double sum = 0.0;
   for (std::size_t p = 0; p < light.size(); p += 4) sum += light[p] + light[p + 1] + light[p + 2];
   return sum / 3.0 / (static_cast<double>(light.size()) / 4.0);
 }
 
-Result<StageRun> run_stage(const Weather& weather, RainRung rung, int frames, bool software, float box_m) {
-  StageSet set;
-  set.present = false;
-  auto stage = RainStage::make(software, set);
-  if (!stage) return tl::unexpected(stage.error());
-  FrameTimer& timer = (*stage)->timer();
-  StageRun result;
-  const int total = warm_up + frames + (software ? 0 : 8);
-  for (int i = 0; i < total; ++i) {
-    Frame frame = weather.frame(10.0 + i / 60.0, rung);
-    if (rung == RainRung::sprites) {
+// The engine's own, a frame at a time.
+class StageRun {
+ public:
+  static Result<StageRun> make(const Weather& weather, RainRung rung, bool software, float box_m) {
+    StageSet set;
+    set.present = false;
+    auto stage = RainStage::make(software, set);
+    if (!stage) return tl::unexpected(stage.error());
+    return StageRun(weather, rung, box_m, std::move(*stage));
+  }
+
+  Result<void> step(int i) {
+    FrameTimer& timer = stage_->timer();
+    Frame frame = weather_.frame(10.0 + i / 60.0, rung_);
+    if (rung_ == RainRung::sprites) {
       frame.rain->sprites = make_frame_sprites({}, *frame.rain);
-      frame.rain->sprites.box_m = box_m;
+      frame.rain->sprites.box_m = box_m_;
     }
     timer.begin_frame(true);
-    if (auto drawn = (*stage)->draw(frame); !drawn) return tl::unexpected(drawn.error());
+    if (auto drawn = stage_->draw(frame); !drawn) return drawn;
     timer.end_frame();
     glFinish();
     const std::vector<Timing> timings = timer.collect();
-    if (i >= warm_up) result.spans.add(timings);
-    result.drops = rain_stats(frame).drops_drawn;
+    if (i >= warm_up) spans.add(timings);
+    drops = rain_stats(frame).drops_drawn;
+    return {};
   }
-  result.mean_light = mean_light((*stage)->read_light());
-  return result;
+  double light() const { return mean_light(stage_->read_light()); }
+
+  Spans spans;
+  std::uint32_t drops = 0;
+
+ private:
+  StageRun(const Weather& weather, RainRung rung, float box_m, std::unique_ptr<RainStage> stage)
+      : weather_(weather), rung_(rung), box_m_(box_m), stage_(std::move(stage)) {}
+  Weather weather_;
+  RainRung rung_;
+  float box_m_;
+  std::unique_ptr<RainStage> stage_;
+};
+
+// By turns, so that a machine that others use is as slow to both.
+Result<void> run_by_turns(TariqPath& his, StageRun& ours, int frames, bool software) {
+  his.spans = {};
+  const int total = warm_up + frames + (software ? 0 : 8);  // GPU times come some frames late
+  for (int i = 0; i < total; ++i) {
+    his.step(i);
+    if (auto drawn = ours.step(i); !drawn) return drawn;
+  }
+  if (!his.moved()) return failure("the particles of the benchmark do not move: no transform feedback");
+  return {};
 }
 
 }  // namespace
@@ -366,33 +392,36 @@ Result<std::vector<BenchRow>> bench_tariq(int drops, int width, int height, int 
 
   const std::vector<Particle> in_view = field_particles(first);
   (*tariq)->spawn(in_view);
-  const Spans his = (*tariq)->run(frames);
-  const double his_light = mean_light((*tariq)->read_light());
-  if (!(*tariq)->moved()) return failure("the particles of the benchmark do not move: no transform feedback");
-  const auto field = run_stage(weather, RainRung::drop_field, frames, software_gl, 0.0f);
+  auto field = StageRun::make(weather, RainRung::drop_field, software_gl, 0.0f);
   if (!field) return tl::unexpected(field.error());
+  if (auto ran = run_by_turns(**tariq, *field, frames, software_gl); !ran) return tl::unexpected(ran.error());
+  const Spans his = (*tariq)->spans;
   log_info("{:.0f} mm/h to {:.1f} m: {} of his particles in view, {} drops of the field; mean light {:.4g} and {:.4g}",
-           weather.emitter.rain_mm_per_hour, weather.emitter.drawn_distance_m, in_view.size(), field->drops, his_light,
-           field->mean_light);
+           weather.emitter.rain_mm_per_hour, weather.emitter.drawn_distance_m, in_view.size(), field->drops,
+           mean_light((*tariq)->read_light()), field->light());
 
   double density = 0.0;
   for (const RainClass& c : first.rain->classes) density += c.drawn ? c.drops_per_m3 : 0.0;
   const auto box_m = static_cast<float>(std::cbrt(drops / density));
   (*tariq)->spawn(box_particles(*first.rain, drops, box_m));
-  const Spans his_box = (*tariq)->run(frames);
-  const auto sprites = run_stage(weather, RainRung::sprites, frames, software_gl, box_m);
+  auto sprites = StageRun::make(weather, RainRung::sprites, software_gl, box_m);
   if (!sprites) return tl::unexpected(sprites.error());
+  if (auto ran = run_by_turns(**tariq, *sprites, frames, software_gl); !ran) return tl::unexpected(ran.error());
   log_info("a box of {:.1f} m about the camera: {} of {} particles in view", box_m, sprites->drops, drops);
 
+  const auto row = [&](const Spans& spans, const char* name, std::initializer_list<const char*> passes) {
+    return spans.row(std::string("tariq/") + name, passes, n, size, gpu);
+  };
   return std::vector<BenchRow>{
-      his.row("tariq/animate_transform_feedback", {"animate"}, n, size, gpu),
-      his.row("tariq/draw_geometry_shader", {"draw"}, n, size, gpu),
-      his.row("tariq/total", {"animate", "draw"}, n, size, gpu),
-      field->spans.row("tariq/drop_field", {"rain_cells", "rain_splat"}, n, size, gpu),
-      field->spans.row("tariq/drop_field_composite", {"rain_cells", "rain_splat", "rain_composite"}, n, size, gpu),
-      his_box.row("tariq/box_total", {"animate", "draw"}, n, size, gpu),
-      sprites->spans.row("tariq/sprites", {"rain_sprites"}, n, size, gpu),
-      sprites->spans.row("tariq/sprites_composite", {"rain_sprites", "rain_composite"}, n, size, gpu)};
+      row(his, "animate_transform_feedback", {"animate"}),
+      row(his, "draw_geometry_shader", {"draw"}),
+      row(his, "draw_simple_shader", {"draw_simple"}),
+      row(his, "total", {"animate", "draw"}),
+      row(field->spans, "drop_field", {"rain_cells", "rain_splat"}),
+      row(field->spans, "drop_field_composite", {"rain_cells", "rain_splat", "rain_composite"}),
+      row((*tariq)->spans, "box_total", {"animate", "draw"}),
+      row(sprites->spans, "sprites", {"rain_sprites"}),
+      row(sprites->spans, "sprites_composite", {"rain_sprites", "rain_composite"})};
 }
 
 }  // namespace petrichor
