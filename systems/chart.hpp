@@ -33,11 +33,15 @@ struct Chart {
   std::vector<ChartPoint> points;
 };
 
-// Where no other point is both faster and truer. One flag a point.
+// Stable points than which no other stable one is both faster and truer. One flag a point.
 std::vector<bool> on_hull(const std::vector<ChartPoint>&);
 
-// NAME.csv, and with gnuplot NAME.svg and NAME.png. Without gnuplot it warns and leaves NAME.gnuplot to draw them with.
+// NAME.csv, and with gnuplot NAME.svg and NAME.png. Without gnuplot it warns and writes the table alone.
 Result<void> write_chart(const std::filesystem::path& folder, const Chart&);
+// The table that write_chart wrote; errors name file and line.
+Result<Chart> read_chart(const std::filesystem::path& csv);
+// Draws every table of a folder again, say those of a machine without gnuplot.
+Result<void> redraw_charts(const std::filesystem::path& folder);
 
 // What a chart is made with. progress gets 0 to 1; software: timings by glFinish, smaller pictures.
 struct ChartRun {

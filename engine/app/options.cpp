@@ -143,7 +143,8 @@ ParsedCommandLine parse_command_line(int argc, char** argv) {
   add_budget(*render_app, render.budget_ms);
 
   auto* bench_app = app.add_subcommand("bench", "Measure speed; one JSON row a case");
-  bench_app->add_option("names", bench.names, "Which benchmarks (default: all): ecs, rain, rungs, near_drops, tariq")->type_name("NAME");
+  bench_app->add_option("names", bench.names, "Which benchmarks (default: all): ecs, rain, rungs, near_drops, tariq")
+      ->type_name("NAME");
   bench_app->add_option("--drops", bench.drops, "Drops of the rain benchmark")
       ->check(CLI::Range(std::int64_t{1}, std::int64_t{1000000000}))
       ->capture_default_str();
@@ -152,8 +153,13 @@ ParsedCommandLine parse_command_line(int argc, char** argv) {
   bench_app->add_option("--json", bench.json, "Write there instead of standard output")->type_name("FILE");
 
   auto* chart_app = app.add_subcommand("chart", "Chart speed against accuracy");
-  chart_app->add_option("effects", chart.effects, "Which effects (default: all): rainfall")->type_name("EFFECT");
+  chart_app
+      ->add_option("effects", chart.effects,
+                   "Which (default: all): rainfall, streaks, near_drops, occlusion, classes, snow")
+      ->type_name("EFFECT");
   chart_app->add_option("--out", chart.out, "Folder for the tables and pictures")->capture_default_str();
+  chart_app->add_option("--redraw", chart.redraw, "Measure nothing: draw the tables of this folder again")
+      ->type_name("FOLDER");
 
   auto* measure_app = app.add_subcommand("measure", "Read physical quantities from the running system, as JSON");
   measure_app->require_subcommand(1);

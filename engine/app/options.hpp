@@ -53,6 +53,7 @@ struct BenchOptions {
 struct ChartOptions {
   std::vector<std::string> effects;
   std::filesystem::path out = "docs/charts";
+  std::filesystem::path redraw;  // a folder of tables to be drawn again; nothing is measured
 };
 
 struct MeasureOptions {

@@ -94,6 +94,7 @@ Result<void> bench(const BenchOptions& options) {
 }
 
 Result<void> chart(const ChartOptions& options) {
+  if (!options.redraw.empty()) return redraw_charts(options.redraw);
   std::vector<std::string> known;
   for (const ChartOffer& offer : all_charts()) known.emplace_back(offer.name);
   const auto names = pick(options.effects, known, "chart");

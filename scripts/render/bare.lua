@@ -5,8 +5,8 @@ return {
     picture = { format = "rgba8" },
     near_drops = { format = "none" },
     near_environment = { format = "none" },
-    snow_light = { format = "rgba16f", scale = 1 / 16, layers = 12 },
-    rain_light = { format = "rgba16f", scale = 1 / 16, layers = 12 },
+    snow_light = { format = "rgba16f", scale = 1 / 24, layers = 12 },
+    rain_light = { format = "rgba16f", scale = 1 / 24, layers = 12 },
   },
   passes = {
     { pass = "sky", colour = "colour" },

@@ -22,8 +22,8 @@ local resources = {
   light_lists = { format = "rgba32ui", scale = 1 / 8 },            -- a bit a lamp, for every 8x8 pixels
   colour      = { format = "rgba16f" },                            -- the picture as light
   airlight    = { format = "rgba16f", scale = 1 / 4 },             -- lamps glowing in the mist
-  rain_light  = { format = "rgba16f", scale = 1 / 16, layers = 12 },  -- lamps on drops that are not known one by one
-  snow_light  = { format = "rgba16f", scale = 1 / 16, layers = 12 },  -- and on flakes
+  rain_light  = { format = "rgba16f", scale = 1 / 24, layers = 12 },  -- lamps on drops that are not known one by one
+  snow_light  = { format = "rgba16f", scale = 1 / 24, layers = 12 },  -- and on flakes
   near_drops  = { format = "none" },        -- drops that rain_splat leaves to pass near_drops
   near_environment = { format = "none" },
   bloom       = { format = "rgba16f", scale = 1 / 2, mips = 6 },   -- what the lens scatters

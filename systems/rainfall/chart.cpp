@@ -65,7 +65,7 @@ Result<std::vector<Picture>> truths(Studio& studio, std::uint32_t seed, Steps& s
     auto image = studio.truth(moment(i), seed);
     if (!image) return tl::unexpected(image.error());
     images.push_back(std::move(*image));
-    steps.advance(64);
+    steps.advance(32);
   }
   return images;
 }
@@ -155,7 +155,7 @@ Result<void> chart_scene(const ChartRun& run, const StudioScene& scene, Steps& s
 Result<void> chart_rainfall(const ChartRun& run) {
   const std::array scenes{day_street(), night_lamps(), storm()};
   Steps steps{run, static_cast<double>(scenes.size()) *
-                       (2.0 * moments * 64 + static_cast<double>(settings().size()) * (moments + repeats + warm_up))};
+                       (2.0 * moments * 32 + static_cast<double>(settings().size()) * (moments + repeats + warm_up))};
   for (const StudioScene& scene : scenes)
     if (auto charted = chart_scene(run, scene, steps); !charted) return charted;
   return {};

@@ -21,7 +21,11 @@ vec3 lamp_on_piece(LightGpu light, vec3 ray, float from, float to, float footpri
   float h = max(length(lamp - c * ray), max(light.intensity_radius.w, 0.35 * footprint));
   float away = max(max(from - c, c - to), 0.0), nearest2 = h * h + away * away;
   float range2 = light.position_range.w * light.position_range.w;
-  if (nearest2 > range2 || bright * drop_phase(1.0) < least_radiance * nearest2) return vec3(0.0);
+  // The phase falls with the turn but for the rainbow; the turn grows along the ray.
+  vec2 ends = vec2(from, to) - c;
+  vec2 turns = -ends * inversesqrt(h * h + ends * ends);
+  float most = max(drop_phase(turns.x), drop_phase(turns.y));
+  if (nearest2 > range2 || bright * most < least_radiance * nearest2) return vec3(0.0);
   // b - a without cancelling.
   float a = atan((from - c) / h), width = atan((to - from) * h, h * h + (to - c) * (from - c));
   float sum = 0.0;

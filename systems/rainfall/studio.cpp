@@ -13,7 +13,6 @@ namespace petrichor {
 namespace {
 
 constexpr double tick_s = 1.0 / 120.0;
-constexpr int instants = 64;  // of the truth's exposure
 constexpr int block = 8;      // pixels: statistics are pooled over blocks, or a few pictures would be too few
 constexpr int rings = 5, wedges = 8;
 
@@ -87,7 +86,8 @@ StudioScene storm() {
   s.wind.velocity_mps = {8.0f, 0.0f, 0.0f};
   s.wind.gust_mps = 3.0f;
   s.camera_velocity_mps = {0.0f, 0.0f, -1.5f};
-  s.lamps_m = {{-2.5f, 1.3f, -12.0f}, {2.0f, 2.3f, -16.0f}};
+  s.wall_distance_m = 14.0f;
+  s.lamps_m = {{-2.5f, 1.3f, -9.0f}, {2.0f, 2.3f, -12.0f}};
   return s;
 }
 
@@ -150,6 +150,7 @@ StatisticsError compare(const Statistics& found, const Statistics& truth, const 
 Result<std::unique_ptr<Studio>> Studio::make(bool software, const StudioScene& scene, int width, int height) {
   std::unique_ptr<Studio> studio(new Studio);
   studio->scene_ = scene;
+  studio->software_ = software;
   studio->width_ = width ? width : software ? 240 : 640;
   studio->height_ = height ? height : software ? 136 : 360;
   StageSet set;
@@ -267,6 +268,7 @@ Result<Picture> Studio::truth(double time_s, std::uint32_t seed) {
   Emitter emitter = cast().emitter;
   emitter.seed = seed;
   const WindMotion wind = start_rain_motion(emitter, scene_.wind);
+  const int instants = truth_instants();
   for (int i = 0; i < instants; ++i) {
     Frame f = frame(time_s);
     const double earlier = f.camera.exposure_s * (i + 0.5) / instants;
@@ -283,7 +285,7 @@ Result<Picture> Studio::truth(double time_s, std::uint32_t seed) {
     auto image = draw(f);
     if (!image) return image;
     if (sum.empty()) sum.assign(image->size(), 0.0f);
-    for (std::size_t k = 0; k < sum.size(); ++k) sum[k] += (*image)[k] / instants;
+    for (std::size_t k = 0; k < sum.size(); ++k) sum[k] += (*image)[k] / static_cast<float>(instants);
   }
   return sum;
 }

@@ -75,7 +75,8 @@ class Studio {
   // Milliseconds of the rain's own passes, by glFinish on software OpenGL and by GPU timers elsewhere.
   Result<std::vector<Timing>> time_passes(Frame&);
   Result<double> time(Frame&);  // their sum
-  // Every drop before the wall, the mean of 64 instants of the exposure.
+  // Every drop before the wall, the mean of so many instants of the exposure.
+  int truth_instants() const { return software_ ? 32 : 64; }
   Result<Picture> truth(double time_s, std::uint32_t seed);
   int width() const { return width_; }
   int height() const { return height_; }
@@ -93,6 +94,7 @@ class Studio {
   double last_s_ = -1.0;
   Techniques techniques_;
   int width_ = 0, height_ = 0;
+  bool software_ = true;
   std::uint64_t number_ = 0;
 };
 
