@@ -10,7 +10,8 @@ namespace petrichor {
 
 // In one run, of one rain (10 to 50 mm/h, 45 degrees high as in his Table 2, 1/60 s, three lamps, no depth buffer):
 //   tariq/animate_transform_feedback  his particles, moved by a vertex shader and streamed out
-//   tariq/draw_geometry_shader        the same as quads of a geometry shader, blended over the picture; a fragment reads
+//   tariq/draw_geometry_shader        the same as quads of a geometry shader, blended over the picture; a fragment
+//   reads
 //                                     four textures of an array for each lamp
 //   tariq/draw_simple_shader          with his simple shader instead, which reads none (his Table 2)
 //   tariq/total                       the first two
