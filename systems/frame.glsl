@@ -16,4 +16,22 @@ float undrawn_rain_depth(float distance_m) {
   return depth;
 }
 
+// Where the rain's techniques without classes begin among the onsets, and where the snow does, whose last is its cone.
+const uint first_other_onset = 5u, first_snow_onset = 8u;
+
+// The same in two groups, extinction and mean onset each: of the fields, whose drops and flakes leave one by one, class
+// by class, over a long way; and of the techniques that end at one distance. Order of the onsets: update_onsets().
+void undrawn_rain_groups(out vec2 fields, out vec2 others) {
+  fields = others = vec2(0.0);
+  for (uint i = 0u; i < 2u * frame.counts.z; ++i) {
+    vec2 onset = (i & 1u) == 0u ? frame.rain_onsets[i >> 1u].xy : frame.rain_onsets[i >> 1u].zw;
+    vec2 weighed = vec2(onset.x, onset.x * onset.y);
+    bool ends_at_once = (i >= first_other_onset && i < first_snow_onset) || i == 2u * uint(RAIN_ONSET_PAIRS) - 1u;
+    if (ends_at_once) others += weighed;
+    else fields += weighed;
+  }
+  fields.y = fields.x > 0.0 ? fields.y / fields.x : 0.0;
+  others.y = others.x > 0.0 ? others.y / others.x : 0.0;
+}
+
 #endif

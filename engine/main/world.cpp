@@ -79,12 +79,14 @@ Result<std::pair<glm::vec3, glm::vec3>> bounds_of(Registry& registry,
 void give_techniques(Registry& registry) {
   std::vector<Entity> emitters;
   registry.view<const Emitter>().each([&](Entity entity, const Emitter&) { emitters.push_back(entity); });
+  bool snows = false;
+  registry.view<const Snowfall>().each([&](Entity, const Snowfall&) { snows = true; });
   for (const Entity entity : emitters) {
     if (!registry.find<DoubleCone>(entity)) registry.emplace<DoubleCone>(entity);
     if (!registry.find<LayeredComposite>(entity)) registry.emplace<LayeredComposite>(entity);
     if (!registry.find<StreakSprites>(entity)) registry.emplace<StreakSprites>(entity);
     if (!registry.find<NearDrops>(entity)) registry.emplace<NearDrops>(entity);
-    if (!registry.find<Snowfall>(entity)) registry.emplace<Snowfall>(entity);
+    if (!snows) registry.emplace<Snowfall>(entity);
   }
 }
 

@@ -24,6 +24,8 @@ void main() {
   float end = depth > 0.0 ? min(length(relative_position(floor(pixel) + 0.5, depth)), reach_m) : reach_m;
 
   float near_extinction = frame.mist.x + frame.rain.z;
+  vec2 fields, others;
+  undrawn_rain_groups(fields, others);
   vec3 sum = vec3(0.0);
   uvec4 mask = texelFetch(lists, texel / 8, 0);
   while ((mask.x | mask.y | mask.z | mask.w) != 0u) {
@@ -50,12 +52,14 @@ void main() {
       vec3 from_lamp = ray * x - lamp;
       float cosine = dot(from_lamp, light.direction_kind.xyz) * cosine_eta / h;  // |from_lamp| = h / cos(eta)
       float strength = spot_attenuation(cosine, light.cone_shadow.x, light.cone_shadow.y);
-      // Around frame.rain.y drops that draw themselves give way to extinction, class by class. The ramp stands for
-      // that; a step would show as discs about the lamps where a node of the quadrature crosses it.
-      float far_rain = max(x - frame.rain.y, 0.0);
-      float scattering = frame.mist.x + frame.rain.z + frame.rain.x * smoothstep(0.4 * frame.rain.y, 1.6 * frame.rain.y + 0.001, x);
-      glow += point.y * phase_hg(-sine, forward) * scattering * strength *
-              exp(-near_extinction * airlight_path(sine, cosine_eta, c, h) - frame.rain.x * far_rain);
+      // Around the onset of a field drops that draw themselves give way to extinction, class by class, over a long
+      // way; other techniques end at one distance. Ramps stand for both: a step would show as discs about the lamps
+      // where a node of the quadrature crosses it.
+      float undrawn = fields.x * smoothstep(0.4 * fields.y, 1.6 * fields.y + 0.001, x) +
+                      others.x * smoothstep(0.8 * others.y, 1.2 * others.y + 0.001, x);
+      float thickness = fields.x * max(x - fields.y, 0.0) + others.x * max(x - others.y, 0.0);
+      glow += point.y * phase_hg(-sine, forward) * (near_extinction + undrawn) * strength *
+              exp(-near_extinction * airlight_path(sine, cosine_eta, c, h) - thickness);
     }
 #ifdef SHADOWS
     // The lamp's shadow where the ray passes nearest to it: no halo through a house.

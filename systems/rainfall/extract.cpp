@@ -160,16 +160,14 @@ void extract_rainfall(const Registry& registry, Frame& frame, double time_s) {
     });
   }
   Emitter budgeted = *emitter;
-  if (budgeted.maximum_drops == 0) {
-    // While the capped field gives way to the full one its budget grows by factors.
-    const Techniques& t = frame.techniques;
-    const double full = t.share(Effect::rainfall, RainRung::full_field);
-    const double field = full + t.share(Effect::rainfall, RainRung::drop_field) +
-                         t.share(Effect::rainfall, RainRung::near_drops);
-    const double capped = std::max(frame.affordable_drops, 1);
-    budgeted.maximum_drops = static_cast<std::int32_t>(
-        capped * std::pow(std::max(full_field_drops / capped, 1.0), field > 0.0 ? full / field : 0.0));
-  }
+  // While the capped field gives way to the full one its budget grows by factors.
+  const Techniques& t = frame.techniques;
+  const double full = t.share(Effect::rainfall, RainRung::full_field);
+  const double field = full + t.share(Effect::rainfall, RainRung::drop_field) +
+                       t.share(Effect::rainfall, RainRung::near_drops);
+  const double capped = emitter->maximum_drops > 0 ? emitter->maximum_drops : std::max(frame.affordable_drops, 1);
+  budgeted.maximum_drops = static_cast<std::int32_t>(
+      capped * std::pow(std::max(full_field_drops / capped, 1.0), field > 0.0 ? full / field : 0.0));
   frame.rain = make_frame_rain(budgeted, usable ? motion->wind : start_rain_motion(*emitter, wind), frame.camera,
                                frame.width, frame.height, time_s);
   frame.rain->techniques = frame.techniques;

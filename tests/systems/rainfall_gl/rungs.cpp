@@ -68,12 +68,13 @@ TEST_P(RainRungs, SameMeanAsFogAloneAtAnyDistance) {
     cast = (*studio)->cast();
     cast.emitter.maximum_drops = 30'000;
     cast.techniques.set(Effect::rainfall, rung);
-    // 0.5% of the background (issue 3); near a wall rain is a few large drops, so several pictures.
-    EXPECT_NEAR(mean_of(**studio, cast, 8) / dry, fog / dry, 0.005) << wall_m << " m, " << rate << " mm/h";
+    // 0.5% of the background (issue 3), and a quarter of what the rain takes: near a wall that is a few large drops.
+    const double bound = std::min(0.005, 0.25 * (1.0 - fog / dry) + 0.0005);
+    EXPECT_NEAR(mean_of(**studio, cast, 8) / dry, fog / dry, bound) << wall_m << " m, " << rate << " mm/h";
     // And while it takes over from the drop field.
     cast.techniques[Effect::rainfall] = {static_cast<std::uint8_t>(rung),
                                          static_cast<std::uint8_t>(RainRung::drop_field), 0.4f};
-    EXPECT_NEAR(mean_of(**studio, cast, 8) / dry, fog / dry, 0.005) << "half, " << wall_m << " m, " << rate << " mm/h";
+    EXPECT_NEAR(mean_of(**studio, cast, 8) / dry, fog / dry, bound) << "half, " << wall_m << " m, " << rate << " mm/h";
   }
 }
 
