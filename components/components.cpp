@@ -57,7 +57,9 @@ std::vector<Schema> make_schemas() {
           {field<&DoubleCone::published>("published", "", any, "As printed, with what is known to break."),
            field<&DoubleCone::camera_damping>("camera_damping", "", {0, 2},
                                               "C_f: how much the camera's own speed tilts the rain; 1 is true."),
-           field<&DoubleCone::scroll_speed>("scroll_speed", "", {0, 10}, "S_f: speed of the scroll; 1 is true."),
+           field<&DoubleCone::parallax>("parallax", "", {0, 10},
+                                        "S_f: how much farther each layer looks than the first; 1 is true."),
+           field<&DoubleCone::scroll_speed>("scroll_speed", "", {0, 10}, "Speed of the scroll; 1 is true."),
            field<&DoubleCone::streak_length>("streak_length", "", {0, 10}, "S_streak: length of streaks; 1 is true."),
            field<&DoubleCone::texture>("texture", "", any, "Which texture; automatic goes by the rate.", cone_textures)}),
       schema<LayeredComposite>(

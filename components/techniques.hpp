@@ -12,7 +12,8 @@ enum class ConeTexture { automatic, drizzle, rain, snow_fine, snow_coarse };
 struct DoubleCone {
   bool published = false;        // exactly as printed, with what is known to break
   float camera_damping = 1.0f;   // C_f of eq. 1: 1 is true, less lets the camera's speed tilt the rain less
-  float scroll_speed = 1.0f;     // S_f of eq. 3
+  float parallax = 1.0f;         // S_f of eq. 2: multiplies how much farther away each layer looks than the first
+  float scroll_speed = 1.0f;     // multiplies D_precip of eq. 3
   float streak_length = 1.0f;    // S_streak of eq. 2
   ConeTexture texture = ConeTexture::automatic;
 };

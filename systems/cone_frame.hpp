@@ -24,6 +24,7 @@ struct FrameCone {
   float apex_fade = 0.0f;                  // 1: nothing moves past the camera: even extinction instead of streaks
   std::array<float, cone_layers> phase{};  // of each layer's texture along the axis, wrapped to [0, 1)
   std::array<float, cone_layers> elongation{1.0f, 1.0f, 1.0f, 1.0f};  // streak length over that of the texture
+  std::array<float, cone_layers> farther{1.0f, 1.0f, 1.0f, 1.0f};     // times as far as it is each layer looks
   float far_m = cone_edges_m[cone_layers];                            // the outermost layer stands for rain to here
 };
 

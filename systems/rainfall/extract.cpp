@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "systems/first_of.hpp"
 #include "systems/rainfall/drop_physics.hpp"
 #include "systems/rainfall/layers.hpp"
 
@@ -77,6 +78,11 @@ std::vector<double> response_times(const std::vector<DropClass>& classes) {
 
 }  // namespace
 
+Wind first_wind(const Registry& registry) {
+  const auto wind = first_of<Wind>(registry);
+  return wind ? *wind : Wind{};
+}
+
 WindMotion start_rain_motion(const Emitter& emitter, const Wind& wind, int drawn) {
   return start_wind_motion(wind, response_times(make_drop_classes(emitter, drawn)));
 }
@@ -113,19 +119,10 @@ FrameRain make_frame_rain(const Emitter& emitter, const WindMotion& motion, cons
 }
 
 void simulate_rainfall(Registry& registry, double time_s) {
-  Entity entity{};
-  const Emitter* emitter = nullptr;
-  registry.view<Emitter>().each([&](Entity e, const Emitter& found) {
-    if (!emitter || entity_index(e) < entity_index(entity)) entity = e, emitter = &found;
-  });
+  const auto emitter = first_of<Emitter>(registry);
   if (!emitter) return;
-  Entity first{};
-  Wind wind;
-  bool any = false;
-  registry.view<Wind>().each([&](Entity e, const Wind& found) {
-    if (!any || entity_index(e) < entity_index(first)) first = e, wind = found, any = true;
-  });
-  RainMotion* motion = registry.find<RainMotion>(entity);
+  const Wind wind = first_wind(registry);
+  RainMotion* motion = registry.find<RainMotion>(emitter.entity);
   const bool other_classes = motion && (motion->minimum_diameter_mm != emitter->minimum_diameter_mm ||
                                         motion->maximum_diameter_mm != emitter->maximum_diameter_mm);
   if (!motion || other_classes) {
@@ -133,7 +130,7 @@ void simulate_rainfall(Registry& registry, double time_s) {
     if (motion)
       *motion = std::move(fresh);
     else
-      registry.emplace<RainMotion>(entity, std::move(fresh));
+      registry.emplace<RainMotion>(emitter.entity, std::move(fresh));
     return;
   }
   follow_wind(motion->wind, wind, time_s);
@@ -141,35 +138,23 @@ void simulate_rainfall(Registry& registry, double time_s) {
 
 void extract_rainfall(const Registry& registry, Frame& frame, double time_s) {
   frame.rain.reset();
-  Entity entity{};
-  const Emitter* emitter = nullptr;
-  registry.view<Emitter>().each([&](Entity e, const Emitter& found) {
-    if (!emitter || entity_index(e) < entity_index(entity)) entity = e, emitter = &found;
-  });
+  const auto emitter = first_of<Emitter>(registry);
   if (!emitter || !(emitter->rain_mm_per_hour > 0.0f)) return;
-  const RainMotion* motion = registry.find<RainMotion>(entity);
+  const RainMotion* motion = registry.find<RainMotion>(emitter.entity);
   const bool usable = motion && motion->minimum_diameter_mm == emitter->minimum_diameter_mm &&
                       motion->maximum_diameter_mm == emitter->maximum_diameter_mm;
-  // Before the first tick: the steady motion.
-  Wind wind;
-  if (!usable) {
-    Entity first{};
-    bool any = false;
-    registry.view<Wind>().each([&](Entity e, const Wind& found) {
-      if (!any || entity_index(e) < entity_index(first)) first = e, wind = found, any = true;
-    });
-  }
   Emitter budgeted = *emitter;
   // While the capped field gives way to the full one its budget grows by factors.
   const Techniques& t = frame.techniques;
   const double full = t.share(Effect::rainfall, RainRung::full_field);
-  const double field = full + t.share(Effect::rainfall, RainRung::drop_field) +
-                       t.share(Effect::rainfall, RainRung::near_drops);
+  const double field =
+      full + t.share(Effect::rainfall, RainRung::drop_field) + t.share(Effect::rainfall, RainRung::near_drops);
   const double capped = emitter->maximum_drops > 0 ? emitter->maximum_drops : std::max(frame.affordable_drops, 1);
   budgeted.maximum_drops = static_cast<std::int32_t>(
       capped * std::pow(std::max(full_field_drops / capped, 1.0), field > 0.0 ? full / field : 0.0));
-  frame.rain = make_frame_rain(budgeted, usable ? motion->wind : start_rain_motion(*emitter, wind), frame.camera,
-                               frame.width, frame.height, time_s);
+  // Before the first tick: the steady motion.
+  frame.rain = make_frame_rain(budgeted, usable ? motion->wind : start_rain_motion(*emitter, first_wind(registry)),
+                               frame.camera, frame.width, frame.height, time_s);
   frame.rain->techniques = frame.techniques;
 }
 

@@ -28,6 +28,9 @@ void extract_rainfall(const Registry&, Frame&, double time_s);
 // mean_reach, expected_drops and each class's reach.
 void fit_distance(FrameRain&, const FrameCamera&, int width, int height);
 
+// The first (by entity), or still air.
+Wind first_wind(const Registry&);
+
 // The same from plain values, for measuring and tests.
 WindMotion start_rain_motion(const Emitter&, const Wind&, int drawn = drawn_classes);
 // `drawn` as the motion was started with.

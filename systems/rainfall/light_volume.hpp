@@ -10,5 +10,7 @@ namespace petrichor {
 
 // Slot rain_light: an rgba16f array, as many slices as it has layers.
 PassOffer rain_light_pass(std::shared_ptr<RainOptics>);
+// Fills such a volume with shader "fill", for the particles whose optics are bound.
+void fill_light_volume(PassContext&, const char* slot);
 
 }  // namespace petrichor

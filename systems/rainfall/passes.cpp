@@ -1,13 +1,12 @@
 #include "systems/rainfall/passes.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <memory>
 #include <string>
-#include <string_view>
 
+#include "systems/rainfall/composite.hpp"
 #include "systems/rainfall/cone/passes.hpp"
 #include "systems/rainfall/layered/passes.hpp"
 #include "systems/rainfall/layers.hpp"
@@ -15,11 +14,9 @@
 #include "systems/rainfall/near_drops/near.hpp"
 #include "systems/rainfall/near_drops/passes.hpp"
 #include "systems/rainfall/lists.hpp"
-#include "systems/rainfall/optics.hpp"
 #include "systems/rainfall/snow/passes.hpp"
 #include "systems/rainfall/sprites/passes.hpp"
 #include "systems/rainfall/streaks/gpu.hpp"
-#include "systems/rainfall/sums.hpp"
 
 namespace petrichor {
 namespace {
@@ -27,7 +24,6 @@ namespace {
 // What the three passes share between them and from frame to frame.
 struct RainGpu {
   Buffer layers, cells, command, read_back;
-  VertexArray no_vertices;
   bool software = false;  // draw sorted by length
   bool software_device = false, device_known = false;
   std::uint32_t layer_count = 0, capacity = 0;
@@ -166,52 +162,13 @@ void splat(RainGpu& gpu, PassContext& context) {
 
 void composite(RainGpu& gpu, PassContext& context) {
   const Frame& frame = context.frame;
-  RainSums& sums = *gpu.sums;
-  if (sums.width != context.width || sums.height != context.height) return;  // nobody drew single drops
-  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
-  bind_rain_sums(sums, context.width, context.height);
-  const bool lamps = lamps_on_rain(frame);
-  std::string name = sums.software ? "raster" : "composite";
-  if (context.has("environment")) name += "_environment";
-  if (sums.software && lamps) name += "_lamps";
-  const Program& program = context.program(name);
-  program.use();
-  if (context.has("environment")) context.bind_texture(7, "environment");
   const FrameSprites& sprites = frame.rain->sprites;
   const bool has_sprites = draws_sprites(frame);
   if (has_sprites && sprites.hide_background) clear_texture(context.texture("colour"), {0.0f, 0.0f, 0.0f, 1.0f});
   const float share =
       frame.rain->field_share() + (has_sprites ? frame.rain->share(RainRung::sprites) * sprites.drawn_share() : 0.0f);
   bind_rain_optics(*gpu.optics, frame);
-  program.set("near_extinction", share * frame.rain->drawn_extinction_per_m * distances(frame).x);
-  set_rain_ambient(*gpu.optics, program);
-  program.set("lamps", int(lamps));
-  // The ray through a pixel, one metre deep along the axis.
-  const float tall = frame.uniforms.lens.x, wide = tall * frame.uniforms.lens.y;
-  const glm::mat3 to_world = glm::transpose(glm::mat3(frame.uniforms.view));
-  program.set("ray_corner", to_world * glm::vec3(-wide, -tall, -1.0f));
-  program.set("ray_x", to_world * glm::vec3(2.0f * wide / static_cast<float>(context.width), 0.0f, 0.0f));
-  program.set("ray_y", to_world * glm::vec3(0.0f, 2.0f * tall / static_cast<float>(context.height), 0.0f));
-  if (!sums.software) {
-    context.bind_image(0, "colour", GL_READ_WRITE);
-    program.dispatch(context.width, (context.height + 1) / 2);
-    return;
-  }
-  if (!gpu.no_vertices) {
-    GLuint id = 0;
-    glCreateVertexArrays(1, &id);
-    gpu.no_vertices = VertexArray(id);
-  }
-  static constexpr std::array<std::string_view, 1> colours{"colour"};
-  context.bind_framebuffer(colours, "");
-  glBindVertexArray(gpu.no_vertices);
-  glEnable(GL_BLEND);
-  glBlendFuncSeparate(GL_ONE, GL_SRC_ALPHA, GL_ZERO, GL_ONE);
-  glDrawArrays(GL_TRIANGLES, 0, 3);
-  glDisable(GL_BLEND);
-  glBindVertexArray(0);
-  clear_buffer(sums.optical_depth);
-  if (lamps) clear_buffer(sums.radiance);
+  lay_over(*gpu.sums, context, *gpu.optics, share * frame.rain->drawn_extinction_per_m * distances(frame).x);
 }
 
 }  // namespace
@@ -221,7 +178,6 @@ std::vector<PassOffer> rainfall_passes() {
   gpu->optics = std::make_shared<RainOptics>();
   gpu->sums = std::make_shared<RainSums>();
   newest = gpu;
-  const std::vector<std::string> composite_file{"systems/rainfall/rain_composite.comp.glsl"};
   std::vector<PassOffer> offers(3);
   offers[0].name = "rain_cells";
   offers[0].meaning = "cells of the drop field that the view can see, with the lamps that light them";
@@ -244,15 +200,7 @@ std::vector<PassOffer> rainfall_passes() {
   offers[1].execute = [gpu](PassContext& context) { splat(*gpu, context); };
   offers[2].name = "rain_composite";
   offers[2].meaning = "lays the drops over the picture";
-  offers[2].slots = {{"colour", SlotAccess::modify}, {"environment", SlotAccess::read, true}};
-  offers[2].shaders = {{"composite", {composite_file, {}}},
-                       {"composite_environment", {composite_file, {"ENVIRONMENT"}}}};
-  const std::vector<std::string> raster_files{"systems/rainfall/rain_composite.vert.glsl",
-                                              "systems/rainfall/rain_composite.frag.glsl"};
-  offers[2].shaders["raster"] = {raster_files, {"SOFTWARE"}};
-  offers[2].shaders["raster_lamps"] = {raster_files, {"LAMPS", "SOFTWARE"}};
-  offers[2].shaders["raster_environment"] = {raster_files, {"ENVIRONMENT", "SOFTWARE"}};
-  offers[2].shaders["raster_environment_lamps"] = {raster_files, {"ENVIRONMENT", "LAMPS", "SOFTWARE"}};
+  offer_composite(offers[2], false);
   offers[2].wanted = [](const Frame& frame) { return rains(frame) || draws_sprites(frame); };
   offers[2].execute = [gpu](PassContext& context) { composite(*gpu, context); };
   offers.push_back(rain_light_pass(gpu->optics));

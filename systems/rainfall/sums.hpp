@@ -9,6 +9,7 @@ namespace petrichor {
 struct RainSums {
   Buffer optical_depth, radiance;
   Buffer streaks;  // see lists.hpp
+  VertexArray no_vertices;
   int width = 0, height = 0;
   bool software = false;  // composite by blending, which software OpenGL likes better; set by who draws
 };

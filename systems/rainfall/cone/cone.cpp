@@ -14,6 +14,10 @@ constexpr double t_const_s = 1.0 / 30.0;  // of eq. 3
 // texels of motion a frame, S_streak of eq. 2 and 3 must solve S^2 = 2 y S + 2 y^2.
 constexpr double nominal_mps = 6.5, nominal_step_s = 1.0 / 60.0;
 
+// Where layer i seems to be. S_f of eq. 2 is the first layer's radius over it.
+double seen_radius_m(const std::array<ConeLayer, cone_layers>& layout, int i, double parallax) {
+  return layout[i].radius_m + (parallax - 1.0) * (layout[i].radius_m - layout[0].radius_m);
+}
 double texels_per_metre(const ConeLayer& l) {
   return cone_texture_size / l.tile_m;
 }
@@ -142,6 +146,8 @@ FrameCone frame_cone(const ConeTrack& track, const DoubleCone& set, const ConeFl
   cone.speed_mps = static_cast<float>(track.speed_mps);
   const ConeKinds kinds = cone_kinds(set.texture, flow.mm_per_hour, flow.snow);
   const auto& layout = cone_layout(is_flakes(kinds.first));
+  for (int i = 0; i < cone_layers; ++i)
+    cone.farther[i] = static_cast<float>(seen_radius_m(layout, i, set.parallax) / layout[i].radius_m);
   const double before = track.time_s - time_s;
   if (set.published) {
     // As printed. Vec_precip holds t_delta (eq. 1), so E does; the scroll (eq. 3) is a sum in texels that E then
@@ -150,7 +156,7 @@ FrameCone frame_cone(const ConeTrack& track, const DoubleCone& set, const ConeFl
     const double s_streak = published_streak(layout[0], set.streak_length);
     const double scrolled = track.scrolled_texels - set.scroll_speed * s_streak * before / t_const_s;
     for (int i = 0; i < cone_layers; ++i) {
-      const double s_f = layout[0].radius_m / layout[i].radius_m;
+      const double s_f = layout[0].radius_m / seen_radius_m(layout, i, set.parallax);
       const double e = published_elongation(s_streak, s_f, texels_per_metre(layout[0]), vec);
       cone.elongation[i] = static_cast<float>(1.0 / (s_f * e));
       cone.phase[i] = static_cast<float>(wrap(s_f * e * s_f * scrolled / cone_texture_size));

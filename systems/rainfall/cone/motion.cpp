@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "components/view.hpp"
+#include "systems/first_of.hpp"
 #include "systems/rainfall/cone/cone.hpp"
 #include "systems/rainfall/drop_sizes.hpp"
 #include "systems/rainfall/extract.hpp"
@@ -12,40 +13,22 @@
 namespace petrichor {
 namespace {
 
-template <class Component, class R>
-const Component* first_of(R& registry, Entity& entity) {
-  const Component* first = nullptr;
-  registry.template view<Component>().each([&](Entity e, const Component& found) {
-    if (!first || entity_index(e) < entity_index(entity)) entity = e, first = &found;
-  });
-  return first;
-}
-
 // Whose entity carries the cone and its settings.
 struct Source {
-  Entity entity{};
-  const Emitter* emitter = nullptr;
-  const Snowfall* snow = nullptr;
+  Entity entity = null_entity;
+  First<Emitter> rain;
+  First<Snowfall> snow;
   DoubleCone set;
+  explicit operator bool() const { return rain || snow; }
 };
-template <class R>
-Source source_of(R& registry) {
+Source source_of(const Registry& registry) {
   Source s;
-  Entity snow_entity{};
-  s.emitter = first_of<Emitter>(registry, s.entity);
-  s.snow = first_of<Snowfall>(registry, snow_entity);
-  if (!s.emitter) s.entity = snow_entity;
-  if (s.emitter || s.snow)
-    if (const DoubleCone* set = registry.template find<DoubleCone>(s.entity)) s.set = *set;
+  s.rain = first_of<Emitter>(registry);
+  s.snow = first_snowfall(registry);
+  s.entity = s.rain ? s.rain.entity : s.snow.entity;
+  if (s)
+    if (const DoubleCone* set = registry.find<DoubleCone>(s.entity)) s.set = *set;
   return s;
-}
-
-const Camera* active_camera(Registry& registry, Entity& entity) {
-  const Camera* chosen = nullptr;
-  registry.view<Camera>().each([&](Entity e, const Camera& camera) {
-    if (camera.active && (!chosen || entity_index(e) < entity_index(entity))) entity = e, chosen = &camera;
-  });
-  return chosen;
 }
 
 // The mean fall by extinction, solved again only where the emitter's settings have changed.
@@ -88,7 +71,9 @@ ConeFlow snow_flow(const ConeMotion& m, const SnowMotion& snow, const Snowfall& 
   return flow;
 }
 
-void prepare(const DoubleCone& set, float mm_per_hour, bool snow) {
+// Only where they are drawn: who never draws a cone pays for none.
+void prepare(const DoubleCone& set, float share, float mm_per_hour, bool snow) {
+  if (!(share > 0.0f)) return;
   const ConeKinds kinds = cone_kinds(set.texture, mm_per_hour, snow);
   shared_cone_textures(kinds.first);
   shared_cone_textures(kinds.second);
@@ -98,26 +83,24 @@ void prepare(const DoubleCone& set, float mm_per_hour, bool snow) {
 
 void simulate_cone(Registry& registry, double time_s, double step_s) {
   const Source source = source_of(registry);
-  if (!source.emitter && !source.snow) return;
+  if (!source) return;
   ConeMotion* motion = registry.find<ConeMotion>(source.entity);
   if (!motion) motion = &registry.emplace<ConeMotion>(source.entity);
-  Entity eye{};
   float exposure_s = 1.0f / 60.0f;
-  if (const Camera* camera = active_camera(registry, eye)) {
+  if (const auto camera = first_of<Camera>(registry, [](const Camera& c) { return c.active; })) {
     exposure_s = camera->exposure_s;
-    const auto* tracked = registry.find<CameraMotion>(eye);
+    const auto* tracked = registry.find<CameraMotion>(camera.entity);
     if (tracked && tracked->moving_known && step_s > 0.0)
       motion->camera_mps = (tracked->position_m - tracked->previous_position_m) / static_cast<float>(step_s);
   }
-  if (source.emitter) {
-    know_fall(*motion, *source.emitter);
+  if (source.rain) {
+    know_fall(*motion, *source.rain);
     const RainMotion* rain = registry.find<RainMotion>(source.entity);
     if (rain && !rain->wind.answers.empty())
-      advance_cone(motion->rain, source.set, rain_flow(*motion, *rain, *source.emitter, exposure_s, time_s), time_s);
+      advance_cone(motion->rain, source.set, rain_flow(*motion, *rain, *source.rain, exposure_s, time_s), time_s);
   }
-  Entity snow_entity{};
-  if (first_of<Snowfall>(registry, snow_entity)) {
-    const SnowMotion* snow = registry.find<SnowMotion>(snow_entity);
+  if (source.snow) {
+    const SnowMotion* snow = registry.find<SnowMotion>(source.snow.entity);
     if (snow && !snow->wind.answers.empty())
       advance_cone(motion->snow, source.set, snow_flow(*motion, *snow, *source.snow, exposure_s, time_s), time_s);
   }
@@ -125,11 +108,10 @@ void simulate_cone(Registry& registry, double time_s, double step_s) {
 
 void extract_cone(const Registry& registry, Frame& frame, double time_s) {
   const Source source = source_of(registry);
-  // By the time that somebody falls back on the cone its textures are there.
-  if (frame.rain) prepare(source.set, frame.rain->rain_mm_per_hour, false);
-  if (frame.snow) prepare(source.set, frame.snow->snow_mm_per_hour, true);
+  if (frame.rain) prepare(source.set, frame.rain->share(RainRung::double_cone), frame.rain->rain_mm_per_hour, false);
+  if (frame.snow) prepare(source.set, frame.snow->share(SnowRung::double_cone), frame.snow->snow_mm_per_hour, true);
   const FrameCamera& camera = frame.camera;
-  const auto* motion = source.emitter || source.snow ? registry.find<ConeMotion>(source.entity) : nullptr;
+  const auto* motion = source ? registry.find<ConeMotion>(source.entity) : nullptr;
   if (frame.rain) {
     if (motion && motion->rain.time_s >= 0.0) {
       ConeFlow flow;

@@ -8,6 +8,7 @@
 
 #include "systems/rainfall/cone/cone.hpp"
 #include "systems/rainfall/cone/textures.hpp"
+#include "systems/rainfall/rays.hpp"
 #include "systems/rainfall/snow/flake_optics.hpp"
 #include "systems/rainfall/sums.hpp"
 
@@ -22,7 +23,7 @@ struct ConeTextureGpu {
 
 struct ConeGpu {
   std::shared_ptr<RainOptics> rain_optics;
-  FlakeOptics flake_optics;
+  ParticleOptics flake_optics;
   std::array<std::optional<ConeTextureGpu>, 5> textures;  // by ConeTexture, made when first asked for
 };
 
@@ -123,8 +124,10 @@ void set_layers(ConeGpu& gpu, const PassContext& context, const Program& program
   const auto slices = static_cast<float>(context.has(p.light_slot) ? context.texture(p.light_slot).layers : 1);
   for (int i = 0; i < cone_layers; ++i) {
     const ConeLayer& l = cone_layout(flakes)[i];
-    const auto radius = static_cast<float>(l.radius_m), tile = static_cast<float>(l.tile_m);
-    const auto around = static_cast<float>(l.tiles_around / (2.0 * M_PI));
+    // Farther by cone.farther, a layer has that many times as many tiles around, rounded.
+    const float radius = static_cast<float>(l.radius_m) * cone.farther[i], tile = static_cast<float>(l.tile_m);
+    const double tiles_around = std::max(1.0, std::round(l.tiles_around * double(cone.farther[i])));
+    const auto around = static_cast<float>(tiles_around / (2.0 * M_PI));
     const float texel_u = sine / (around * cone_texture_size);
     const float texel_v = sine * tile * cone.elongation[i] / (radius * cone_texture_size);
     // A level finer than filters would have it: blurred streaks would deviate half as much as rain does, and what
@@ -170,8 +173,8 @@ void set_layers(ConeGpu& gpu, const PassContext& context, const Program& program
     const FrameSnow& snow = *frame.snow;
     glm::vec4 jitter, waves;
     for (int i = 0; i < cone_layers; ++i) {
-      jitter[i] =
-          cone.published ? 0.0f : snow.cone_jitter_m * tiles[i] / static_cast<float>(cone_layout(flakes)[i].radius_m);
+      const float radius = static_cast<float>(cone_layout(flakes)[i].radius_m) * cone.farther[i];
+      jitter[i] = cone.published ? 0.0f : snow.cone_jitter_m * tiles[i] / radius;
       waves[i] = std::max(1.0f, std::floor(0.08f / std::max(jitter[i], 1e-3f)));
     }
     program.set("jitter", jitter);
@@ -198,26 +201,17 @@ void draw(ConeGpu& gpu, PassContext& context, const Precipitation& p) {
   if (cone_kinds(p.cone.texture, p.mm_per_hour, p.snow).second_share > 0.0f) name += "_two_sets";
   const Program& program = context.program(name);
   program.use();
-  if (p.snow)
-    set_flake_ambient(gpu.flake_optics, program);
-  else
-    set_rain_ambient(*gpu.rain_optics, program);
+  set_ambient(p.snow ? gpu.flake_optics : *gpu.rain_optics, program);
   set_layers(gpu, context, program, p);
   program.set("use_occlusion", int(map));
   program.set("fall", p.snow ? frame.snow->mean_velocity_mps : frame.rain->mean_velocity_mps);
-  const float tall = frame.uniforms.lens.x, wide = tall * frame.uniforms.lens.y;
-  const glm::mat3 to_world = glm::transpose(glm::mat3(frame.uniforms.view));
-  const glm::vec3 corner = to_world * glm::vec3(-wide, -tall, -1.0f);
-  const glm::vec3 x = to_world * glm::vec3(2.0f * wide / static_cast<float>(context.width), 0.0f, 0.0f);
-  const glm::vec3 y = to_world * glm::vec3(0.0f, 2.0f * tall / static_cast<float>(context.height), 0.0f);
-  program.set("ray_corner", corner);
-  program.set("ray_x", x);
-  program.set("ray_y", y);
+  const ViewRays rays = view_rays(frame.uniforms, context.width, context.height);
+  set_rays(program, rays);
   // The same in the cone's own frame: x and y across its axis, z along it.
   const glm::mat3 to_cone = glm::transpose(glm::mat3(p.cone.side, glm::cross(p.cone.axis, p.cone.side), p.cone.axis));
-  program.set("cone_corner", to_cone * corner);
-  program.set("cone_x", to_cone * x);
-  program.set("cone_y", to_cone * y);
+  program.set("cone_corner", to_cone * rays.corner);
+  program.set("cone_x", to_cone * rays.right);
+  program.set("cone_y", to_cone * rays.up);
   if (scene) context.bind_texture(0, "depth");
   if (map) context.bind_texture(OCCLUSION_UNIT, "occlusion_map");
   if (environment) context.bind_texture(7, "environment");

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "components/view.hpp"
+#include "systems/first_of.hpp"
 #include "systems/rainfall/drop_sizes.hpp"
 #include "systems/rainfall/extract.hpp"
 
@@ -29,15 +30,6 @@ bool same_sizes(const Emitter& a, const Emitter& b) {
          a.minimum_diameter_mm == b.minimum_diameter_mm && a.maximum_diameter_mm == b.maximum_diameter_mm;
 }
 
-template <class Component>
-Entity first_with(const Registry& registry) {
-  Entity first = null_entity;
-  registry.view<Component>().each([&](Entity e, const Component&) {
-    if (first == null_entity || entity_index(e) < entity_index(first)) first = e;
-  });
-  return first;
-}
-
 void set_artist(FrameLayered& layered, const LayeredComposite& settings, const FrameRain& rain, double time_s) {
   layered.published = settings.published;
   layered.strength = settings.strength;
@@ -51,11 +43,8 @@ void set_artist(FrameLayered& layered, const LayeredComposite& settings, const F
 
 // Velocity of the camera over the last tick, as extract_camera has it.
 glm::dvec3 camera_velocity(const Registry& registry, double step_s) {
-  Entity chosen = null_entity;
-  registry.view<Camera>().each([&](Entity e, const Camera& camera) {
-    if (camera.active && (chosen == null_entity || entity_index(e) < entity_index(chosen))) chosen = e;
-  });
-  const auto* motion = chosen == null_entity ? nullptr : registry.find<CameraMotion>(chosen);
+  const auto camera = first_of<Camera>(registry, [](const Camera& c) { return c.active; });
+  const auto* motion = camera ? registry.find<CameraMotion>(camera.entity) : nullptr;
   if (!motion || !motion->moving_known || !(step_s > 0.0)) return glm::dvec3(0.0);
   return (glm::dvec3(motion->position_m) - glm::dvec3(motion->previous_position_m)) / step_s;
 }
@@ -110,7 +99,7 @@ FrameLayered make_frame_layered(const LayeredComposite& settings, const Frame& f
 }
 
 void simulate_layered(Registry& registry, double time_s) {
-  const Entity entity = first_with<Emitter>(registry);
+  const Entity entity = first_of<Emitter>(registry).entity;
   if (entity == null_entity) return;
   const Emitter& emitter = registry.get<Emitter>(entity);
   const RainMotion* rain = registry.find<RainMotion>(entity);
@@ -137,7 +126,7 @@ void simulate_layered(Registry& registry, double time_s) {
 
 void extract_layered(const Registry& registry, Frame& frame, double time_s, double interpolation) {
   if (!frame.rain) return;
-  const Entity entity = first_with<Emitter>(registry);
+  const Entity entity = first_of<Emitter>(registry).entity;
   const LayeredComposite* found = entity == null_entity ? nullptr : registry.find<LayeredComposite>(entity);
   const LayeredComposite settings = found ? *found : LayeredComposite{};
   const LayeredMotion* motion = entity == null_entity ? nullptr : registry.find<LayeredMotion>(entity);

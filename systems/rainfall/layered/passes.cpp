@@ -9,6 +9,7 @@
 #include "systems/rainfall/layered/layered_shared.h"
 #include "systems/rainfall/layered/motion.hpp"
 #include "systems/rainfall/layered/textures.hpp"
+#include "systems/rainfall/rays.hpp"
 #include "systems/rainfall/sums.hpp"
 
 namespace petrichor {
@@ -85,15 +86,6 @@ void set_artist(const Program& program, const FrameLayered& layered) {
   program.set("strength", layered.strength);
   program.set("lightning", 1.0f + layered.lightning);
   program.set("milk", layered.milk);
-}
-
-// Ray of a place of the picture, which is `wide` x `tall` units, one metre deep.
-void set_rays(const Program& program, const FrameUniforms& u, int across, int up) {
-  const float tall = u.lens.x, wide = tall * u.lens.y;
-  const glm::mat3 to_world = glm::transpose(glm::mat3(u.view));
-  program.set("ray_corner", to_world * glm::vec3(-wide, -tall, -1.0f));
-  program.set("ray_x", to_world * glm::vec3(2.0f * wide / static_cast<float>(across), 0.0f, 0.0f));
-  program.set("ray_y", to_world * glm::vec3(0.0f, 2.0f * tall / static_cast<float>(up), 0.0f));
 }
 
 // How cells lie in this frame.
@@ -198,7 +190,7 @@ void fill_shells(LayeredGpu& gpu, PassContext& context, const Cells& cells) {
     hold(gpu.open_share, (context.width + 7) / 8, (context.height + 7) / 8, 1, GL_RGBA8);
     const Program& program = context.program("shelter");
     program.use();
-    set_rays(program, frame.uniforms, 1, 1);
+    set_rays(program, view_rays(frame.uniforms));
     set_edges(program);
     context.bind_texture(OCCLUSION_UNIT, "occlusion_map");
     glBindImageTexture(0, gpu.open_share.id, 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RGBA8);
@@ -206,8 +198,8 @@ void fill_shells(LayeredGpu& gpu, PassContext& context, const Cells& cells) {
   }
   const Program& program = context.program(environment ? "light_environment" : "light");
   program.use();
-  set_rain_ambient(*gpu.optics, program);
-  set_rays(program, frame.uniforms, 1, 1);
+  set_ambient(*gpu.optics, program);
+  set_rays(program, view_rays(frame.uniforms));
   set_edges(program);
   program.set("use_lamps", int(lamps));
   program.set("use_shelter", int(shelter));
@@ -237,7 +229,7 @@ void draw_published(LayeredGpu& gpu, PassContext& context) {
   const glm::vec2 direction = speed > 1e-6f ? clip / speed : glm::vec2(0.0f, -1.0f);
   const Program& program = context.program(normals ? "published_normals" : "published");
   program.use();
-  set_rays(program, u, context.width, context.height);
+  set_rays(program, view_rays(u, context.width, context.height));
   set_artist(program, layered);
   program.set("use_depth", int(scene));
   program.set("direction", direction);
@@ -287,7 +279,7 @@ void draw(LayeredGpu& gpu, PassContext& context) {
   if (cells.turning) name += "_turning";
   const Program& program = context.program(name);
   program.use();
-  set_rays(program, frame.uniforms, context.width, context.height);
+  set_rays(program, view_rays(frame.uniforms, context.width, context.height));
   set_artist(program, frame.rain->layered);
   set_cells(program, frame, cells);
   program.set("use_open_share", int(context.has("occlusion_map")));

@@ -8,26 +8,6 @@
 #include "systems/rainfall/snow/flakes.hpp"
 
 namespace petrichor {
-namespace {
-
-template <class Component, class R>
-const Component* first_of(R& registry, Entity& entity) {
-  const Component* first = nullptr;
-  registry.template view<Component>().each([&](Entity e, const Component& found) {
-    if (!first || entity_index(e) < entity_index(entity)) entity = e, first = &found;
-  });
-  return first;
-}
-
-template <class R>
-Wind wind_of(R& registry) {
-  Entity ignored{};
-  const Wind* wind = first_of<Wind>(registry, ignored);
-  return wind ? *wind : Wind{};
-}
-
-}  // namespace
-
 WindMotion start_snow_motion(const Wind& wind) {
   std::vector<double> times;
   for (const FlakeClass& c : make_flake_classes(1.0)) times.push_back(wind_response_s(c.fall_speed_mps));
@@ -108,10 +88,15 @@ RainLayers view_flakes(const FrameSnow& snow, const FrameCamera& camera, int wid
   return view;
 }
 
+First<Snowfall> first_snowfall(const Registry& registry) {
+  const auto snowing = first_of<Snowfall>(registry, [](const Snowfall& s) { return s.snow_mm_per_hour > 0.0f; });
+  return snowing ? snowing : first_of<Snowfall>(registry);
+}
+
 void simulate_snowfall(Registry& registry, double time_s) {
-  Entity entity{};
-  if (!first_of<Snowfall>(registry, entity)) return;
-  const Wind wind = wind_of(registry);
+  const Entity entity = first_snowfall(registry).entity;
+  if (entity == null_entity) return;
+  const Wind wind = first_wind(registry);
   if (SnowMotion* motion = registry.find<SnowMotion>(entity))
     follow_wind(motion->wind, wind, time_s);
   else
@@ -120,14 +105,13 @@ void simulate_snowfall(Registry& registry, double time_s) {
 
 void extract_snowfall(const Registry& registry, Frame& frame, double time_s) {
   frame.snow.reset();
-  Entity entity{};
-  const Snowfall* found = first_of<Snowfall>(registry, entity);
+  const auto found = first_snowfall(registry);
   if (!found || !(found->snow_mm_per_hour > 0.0f)) return;
   Snowfall budgeted = *found;
   if (budgeted.maximum_flakes == 0) budgeted.maximum_flakes = frame.affordable_drops;
   // Before the first tick: the steady motion.
-  const SnowMotion* motion = registry.find<SnowMotion>(entity);
-  frame.snow = make_frame_snow(budgeted, motion ? motion->wind : start_snow_motion(wind_of(registry)), frame.camera,
+  const SnowMotion* motion = registry.find<SnowMotion>(found.entity);
+  frame.snow = make_frame_snow(budgeted, motion ? motion->wind : start_snow_motion(first_wind(registry)), frame.camera,
                                frame.width, frame.height, time_s);
   frame.snow->techniques = frame.techniques;
 }

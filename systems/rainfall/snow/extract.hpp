@@ -4,6 +4,7 @@
 #include "components/techniques.hpp"
 #include "components/weather.hpp"
 #include "engine/ecs/registry.hpp"
+#include "systems/first_of.hpp"
 #include "systems/frame.hpp"
 #include "systems/rainfall/layers.hpp"
 #include "systems/wind_motion.hpp"
@@ -15,10 +16,12 @@ struct SnowMotion {
   WindMotion wind;
 };
 
-// Every tick: the first snowfall (by entity) follows the first wind. Without a snowfall it does nothing.
+// The one that snows: the first whose rate is above 0, or else the first.
+First<Snowfall> first_snowfall(const Registry&);
+// Every tick: it follows the first wind. Without a snowfall it does nothing.
 void simulate_snowfall(Registry&, double time_s);
 
-// Fills frame.snow, or leaves it empty where there is no snowfall or its rate is 0. After the camera's extraction: the
+// Fills frame.snow, or leaves it empty where nothing snows. After the camera's extraction: the
 // drawn distance is what the budget of flakes allows for this view.
 void extract_snowfall(const Registry&, Frame&, double time_s);
 

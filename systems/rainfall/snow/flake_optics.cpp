@@ -1,13 +1,9 @@
 #include "systems/rainfall/snow/flake_optics.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <span>
-#include <string>
 
 #include "systems/rainfall/drop_optics.hpp"
-#include "systems/rainfall/rain_shared.h"
 
 namespace petrichor {
 namespace {
@@ -16,11 +12,6 @@ constexpr double pi = std::numbers::pi;
 
 double henyey_greenstein(double g, double cosine) {
   return (1.0 - g * g) / (4.0 * pi * std::pow(1.0 + g * g - 2.0 * g * cosine, 1.5));
-}
-
-glm::dvec3 sky_radiance(const FrameSky& sky, const glm::dvec3& direction) {  // as systems/sky.glsl
-  const double glow = std::exp(-std::max(direction.y, 0.0) / std::max(double(sky.glow_height), 1e-3));
-  return glm::mix(glm::dvec3(sky.zenith_cd_m2), glm::dvec3(sky.horizon_cd_m2), glow);
 }
 
 }  // namespace
@@ -62,20 +53,10 @@ glm::dvec3 flake_radiance(const glm::dvec3& direction, const FrameSky& sky) {
   return sum / weights;
 }
 
-void bind_flake_optics(FlakeOptics& optics, const Frame& frame) {
-  if (optics.phase.bytes == 0) upload(optics.phase, std::span<const float>(make_flake_phase()));
-  glBindBufferBase(GL_SHADER_STORAGE_BUFFER, RAIN_OPTICS_BINDING, optics.phase.id);
-  const FrameSky& sky = frame.sky;
-  if (optics.known && sky.zenith_cd_m2 == optics.sky.zenith_cd_m2 && sky.horizon_cd_m2 == optics.sky.horizon_cd_m2 &&
-      sky.glow_height == optics.sky.glow_height)
-    return;
-  optics.ambient = fit_by_elevation([&](const glm::dvec3& ray) { return flake_radiance(ray, sky); });
-  optics.sky = sky;
-  optics.known = true;
-}
-
-void set_flake_ambient(const FlakeOptics& optics, const Program& program) {
-  for (int i = 0; i < 4; ++i) program.set("ambient[" + std::to_string(i) + "]", optics.ambient[i]);
+void bind_flake_optics(ParticleOptics& optics, const Frame& frame) {
+  bind_optics(optics, frame, make_flake_phase, [](const FrameSky& sky) {
+    return fit_by_elevation([&](const glm::dvec3& ray) { return flake_radiance(ray, sky); });
+  });
 }
 
 }  // namespace petrichor

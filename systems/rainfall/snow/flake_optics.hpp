@@ -3,13 +3,10 @@
 // Henyey-Greenstein lobes whose mean cosine is that of severely roughened aggregates without diffraction (0.5: Yang et
 // al. 2013 have 0.75 with it, and diffraction is half of that, at an angle of 0), with a flat back.
 
-#include <array>
 #include <glm/glm.hpp>
 #include <vector>
 
-#include "engine/gpu/objects.hpp"
-#include "engine/gpu/shader.hpp"
-#include "systems/frame.hpp"
+#include "systems/rainfall/optics.hpp"
 
 namespace petrichor {
 
@@ -22,15 +19,7 @@ std::vector<float> make_flake_phase();
 // Mean radiance of a flake that is seen along a unit direction under a sky (no ground: it is mirrored), cd/m2.
 glm::dvec3 flake_radiance(const glm::dvec3& direction, const FrameSky&);
 
-struct FlakeOptics {
-  Buffer phase;  // floats, RAIN_PHASE_BINS; binding RAIN_OPTICS_BINDING
-  FrameSky sky;  // that ambient was made for
-  bool known = false;
-  std::array<glm::vec3, 4> ambient{};
-};
-// Makes what is missing or stale, and binds the phase function where that of drops goes.
-void bind_flake_optics(FlakeOptics&, const Frame&);
-// Uniform ambient[4] of systems/rainfall/ambient.glsl; the program must be in use.
-void set_flake_ambient(const FlakeOptics&, const Program&);
+// As bind_rain_optics, where that of drops goes.
+void bind_flake_optics(ParticleOptics&, const Frame&);
 
 }  // namespace petrichor

@@ -1,7 +1,6 @@
 #include "systems/rainfall/snow/passes.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -9,10 +8,11 @@
 #include <string>
 #include <string_view>
 
+#include "systems/rainfall/composite.hpp"
+#include "systems/rainfall/light_volume.hpp"
 #include "systems/rainfall/snow/extract.hpp"
 #include "systems/rainfall/snow/flake_optics.hpp"
 #include "systems/rainfall/snow/snow_shared.h"
-#include "systems/rainfall/sums.hpp"
 
 namespace petrichor {
 namespace {
@@ -28,9 +28,8 @@ struct Command {
 // flakes show of the surroundings, the rain's what drops do.
 struct SnowGpu {
   Buffer layers, cells, command, discs, read_back;
-  VertexArray no_vertices;
   RainSums sums;
-  FlakeOptics optics;
+  ParticleOptics optics;
   std::uint32_t layer_count = 0, capacity = 0;
   std::uint64_t frame_number = std::numeric_limits<std::uint64_t>::max();
 };
@@ -127,64 +126,10 @@ void draw_flakes(SnowGpu& gpu, PassContext& context) {
 }
 
 void composite(SnowGpu& gpu, PassContext& context) {
-  const Frame& frame = context.frame;
-  if (gpu.sums.width != context.width || gpu.sums.height != context.height) return;  // the table has no snow_field
-  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
-  bind_rain_sums(gpu.sums, context.width, context.height);
-  const bool lamps = lamps_on_snow(frame), software = is_software_gl();
-  std::string name = software ? "raster" : "composite";
-  if (context.has("environment")) name += "_environment";
-  if (software && lamps) name += "_lamps";
-  const Program& program = context.program(name);
-  program.use();
-  if (context.has("environment")) context.bind_texture(7, "environment");
-  program.set("near_extinction",
-              frame.snow->share(SnowRung::field) * frame.snow->extinction_per_m * distances(frame).x);
-  set_flake_ambient(gpu.optics, program);
-  program.set("lamps", int(lamps));
-  // The ray through a pixel, one metre deep along the axis.
-  const float tall = frame.uniforms.lens.x, wide = tall * frame.uniforms.lens.y;
-  const glm::mat3 to_world = glm::transpose(glm::mat3(frame.uniforms.view));
-  program.set("ray_corner", to_world * glm::vec3(-wide, -tall, -1.0f));
-  program.set("ray_x", to_world * glm::vec3(2.0f * wide / static_cast<float>(context.width), 0.0f, 0.0f));
-  program.set("ray_y", to_world * glm::vec3(0.0f, 2.0f * tall / static_cast<float>(context.height), 0.0f));
-  if (!software) {
-    context.bind_image(0, "colour", GL_READ_WRITE);
-    program.dispatch(context.width, (context.height + 1) / 2);
-    return;
-  }
-  if (!gpu.no_vertices) {
-    GLuint id = 0;
-    glCreateVertexArrays(1, &id);
-    gpu.no_vertices = VertexArray(id);
-  }
-  static constexpr std::array<std::string_view, 1> colours{"colour"};
-  context.bind_framebuffer(colours, "");
-  glBindVertexArray(gpu.no_vertices);
-  glEnable(GL_BLEND);
-  glBlendFuncSeparate(GL_ONE, GL_SRC_ALPHA, GL_ZERO, GL_ONE);
-  glDrawArrays(GL_TRIANGLES, 0, 3);
-  glDisable(GL_BLEND);
-  glBindVertexArray(0);
-  clear_buffer(gpu.sums.optical_depth);
-  if (lamps) clear_buffer(gpu.sums.radiance);
-}
-
-void fill_light(SnowGpu& gpu, PassContext& context) {
-  const Texture& volume = context.texture("snow_light");
-  bind_flake_optics(gpu.optics, context.frame);
-  const Program& program = context.program("fill");
-  program.use();
-  program.set("least_radiance", context.parameter("least_radiance"));
-  const FrameUniforms& u = context.frame.uniforms;
-  const float tall = u.lens.x, wide = tall * u.lens.y;
-  const glm::mat3 to_world = glm::transpose(glm::mat3(u.view));
-  program.set("ray_corner", to_world * glm::vec3(-wide, -tall, -1.0f));
-  program.set("ray_x", to_world * glm::vec3(2.0f * wide, 0.0f, 0.0f));
-  program.set("ray_y", to_world * glm::vec3(0.0f, 2.0f * tall, 0.0f));
-  glBindImageTexture(0, volume.id, 0, GL_TRUE, 0, GL_WRITE_ONLY, GL_RGBA16F);
-  glDispatchCompute(static_cast<GLuint>((volume.width + 7) / 8), static_cast<GLuint>((volume.height + 7) / 8),
-                    static_cast<GLuint>(volume.layers));
+  const FrameSnow& snow = *context.frame.snow;
+  gpu.sums.software = is_software_gl();
+  lay_over(gpu.sums, context, gpu.optics,
+           snow.share(SnowRung::field) * snow.extinction_per_m * distances(context.frame).x);
 }
 
 }  // namespace
@@ -202,7 +147,10 @@ std::vector<PassOffer> snow_passes() {
   light.wanted = [](const Frame& frame) {
     return snows(frame) && frame.snow->share(SnowRung::double_cone) > 0.0f && lamps_on_snow(frame);
   };
-  light.execute = [gpu](PassContext& context) { fill_light(*gpu, context); };
+  light.execute = [gpu](PassContext& context) {
+    bind_flake_optics(gpu->optics, context.frame);
+    fill_light_volume(context, "snow_light");
+  };
 
   PassOffer& cells = offers[1];
   cells.name = "snow_cells";
@@ -230,16 +178,7 @@ std::vector<PassOffer> snow_passes() {
   PassOffer& over = offers[3];
   over.name = "snow_composite";
   over.meaning = "lays the flakes over the picture";
-  over.slots = {{"colour", SlotAccess::modify}, {"environment", SlotAccess::read, true}};
-  const std::vector<std::string> compute{"systems/rainfall/rain_composite.comp.glsl"};
-  const std::vector<std::string> raster{"systems/rainfall/rain_composite.vert.glsl",
-                                        "systems/rainfall/rain_composite.frag.glsl"};
-  over.shaders = {{"composite", {compute, {"SNOW"}}},
-                  {"composite_environment", {compute, {"SNOW", "ENVIRONMENT"}}},
-                  {"raster", {raster, {"SNOW", "SOFTWARE"}}},
-                  {"raster_lamps", {raster, {"SNOW", "SOFTWARE", "LAMPS"}}},
-                  {"raster_environment", {raster, {"SNOW", "SOFTWARE", "ENVIRONMENT"}}},
-                  {"raster_environment_lamps", {raster, {"SNOW", "SOFTWARE", "ENVIRONMENT", "LAMPS"}}}};
+  offer_composite(over, true);
   over.wanted = draws_field;
   over.execute = [gpu](PassContext& context) { composite(*gpu, context); };
   return offers;

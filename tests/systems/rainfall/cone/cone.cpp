@@ -6,6 +6,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "systems/rainfall/extract.hpp"
+#include "systems/rainfall/snow/extract.hpp"
+
 namespace petrichor {
 namespace {
 
@@ -148,7 +151,7 @@ TEST(DoubleCone, CameraDampingTiltsTheAxisByItsShare) {  // C_f of eq. 1
   }
 }
 
-TEST(DoubleCone, ScrollSpeedAndStreakLengthDoWhatTheySay) {  // S_f and S_streak
+TEST(DoubleCone, ScrollSpeedAndStreakLengthDoWhatTheySay) {  // D_precip of eq. 3, and S_streak
   const FrameCone plain = cone_after({}, {}, 0.05);
   DoubleCone fast, longer;
   fast.scroll_speed = 2.0f;
@@ -164,6 +167,55 @@ TEST(DoubleCone, ScrollSpeedAndStreakLengthDoWhatTheySay) {  // S_f and S_streak
     // Drawn out, it falls no faster.
     EXPECT_NEAR(drawn_out.phase[i] * drawn_out.elongation[i], plain.phase[i] * plain.elongation[i], 1e-5) << i;
   }
+}
+
+TEST(DoubleCone, ParallaxSetsTheLayersApart) {  // S_f
+  const auto& layout = cone_layout(false);
+  const FrameCone plain = cone_after({}, {}, 0.05);
+  for (const float parallax : {0.0f, 0.5f, 1.0f, 2.0f}) {
+    DoubleCone set;
+    set.parallax = parallax;
+    const FrameCone cone = cone_after(set, {}, 0.05);
+    set.published = true;
+    const FrameCone printed = cone_after(set, {}, 0.05);
+    for (int i = 0; i < cone_layers; ++i) {
+      const double seen_m = layout[0].radius_m + parallax * (layout[i].radius_m - layout[0].radius_m);
+      EXPECT_NEAR(cone.farther[i], seen_m / layout[i].radius_m, 1e-6) << i;
+      // 0.05 s of rain at 6.5 m/s moves as many radians as at that distance.
+      const double moved_rad =
+          cone.phase[i] * cone.elongation[i] * layout[i].tile_m / (layout[i].radius_m * cone.farther[i]);
+      EXPECT_NEAR(moved_rad, 0.325 / seen_m, 1e-3 / seen_m) << i;
+      EXPECT_EQ(cone.elongation[i], plain.elongation[i]);
+      // Eq. 2: 1 / (S_f E) = 1 + C_pixel S_f Vec_precip / S_streak, S_f 1 for the first layer.
+      EXPECT_EQ(printed.farther[i], cone.farther[i]);
+      EXPECT_NEAR((printed.elongation[i] - 1.0f) / (printed.elongation[0] - 1.0f), layout[0].radius_m / seen_m, 1e-5)
+          << i;
+    }
+  }
+}
+
+TEST(DoubleCone, FollowsTheSnowOfWhoSnows) {
+  // An emitter that does not snow is no answer while another entity does.
+  Registry registry;
+  const Entity rain = registry.create(), snow = registry.create();
+  registry.emplace<Emitter>(rain);
+  registry.emplace<Snowfall>(rain);
+  Snowfall falling;
+  falling.snow_mm_per_hour = 2.0f;
+  registry.emplace<Snowfall>(snow, falling);
+  for (int tick = 0; tick <= 12; ++tick) {
+    simulate_rainfall(registry, tick / 120.0);
+    simulate_snowfall(registry, tick / 120.0);
+    simulate_cone(registry, tick / 120.0, 1.0 / 120.0);
+  }
+  const ConeMotion* motion = registry.find<ConeMotion>(rain);
+  ASSERT_TRUE(motion);
+  EXPECT_DOUBLE_EQ(motion->snow.time_s, 0.1);
+  Frame frame;
+  extract_snowfall(registry, frame, 0.1);
+  ASSERT_TRUE(frame.snow);
+  extract_cone(registry, frame, 0.1);
+  for (int i = 0; i < cone_layers; ++i) EXPECT_NEAR(frame.snow->cone.phase[i], motion->snow.phase[i], 1e-6) << i;
 }
 
 TEST(DoubleCone, TexturesFollowTheRate) {

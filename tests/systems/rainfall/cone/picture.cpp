@@ -187,12 +187,14 @@ TEST_F(ConePicture, KnobsLeaveTheMean) {
   const auto s = stage(wall(18.0f));
   Frame plain = rain_frame(20.0f, 1.0f / 60.0f, 4.0);
   const auto first = light_of(*s, plain);
-  DoubleCone longer, faster, drizzle, flakes;
+  DoubleCone longer, faster, farther, nearer, drizzle, flakes;
   longer.streak_length = 2.0f;
   faster.scroll_speed = 1.7f;
+  farther.parallax = 2.0f;
+  nearer.parallax = 0.5f;
   drizzle.texture = ConeTexture::drizzle;
   flakes.texture = ConeTexture::snow_coarse;
-  for (const DoubleCone& set : {longer, faster, drizzle, flakes}) {
+  for (const DoubleCone& set : {longer, faster, farther, nearer, drizzle, flakes}) {
     Frame frame = rain_frame(20.0f, 1.0f / 60.0f, 4.0, set);
     const auto light = light_of(*s, frame);
     EXPECT_NE(light, first);

@@ -158,6 +158,25 @@ TEST(SnowField, HazeAndFlakesShareTheExtinction) {
   }
 }
 
+TEST(SnowField, IsOfTheFirstThatSnows) {
+  // Every emitter carries a snowfall, most of rate 0.
+  Registry registry;
+  const Entity dry = registry.create(), first = registry.create(), second = registry.create();
+  registry.emplace<Snowfall>(second, snow_of(5.0f));
+  registry.emplace<Snowfall>(first, snow_of(2.0f));
+  registry.emplace<Snowfall>(dry);
+  simulate_snowfall(registry, 0.0);
+  EXPECT_TRUE(registry.find<SnowMotion>(first));
+  EXPECT_FALSE(registry.find<SnowMotion>(dry));
+  Frame frame;
+  extract_snowfall(registry, frame, 0.0);
+  ASSERT_TRUE(frame.snow);
+  EXPECT_EQ(frame.snow->snow_mm_per_hour, 2.0f);
+  registry.get<Snowfall>(dry).snow_mm_per_hour = 0.5f;
+  extract_snowfall(registry, frame, 0.0);
+  EXPECT_EQ(frame.snow->snow_mm_per_hour, 0.5f);
+}
+
 TEST(SnowField, NoSnowNoFrame) {
   Registry registry;
   Frame frame;
