@@ -206,7 +206,7 @@ std::vector<PassOffer> rainfall_passes() {
   offers.push_back(rain_light_pass(gpu->optics));
   for (PassOffer& offer : cone_passes(gpu->optics)) offers.push_back(std::move(offer));
   for (PassOffer& offer : layered_passes(gpu->optics)) offers.push_back(std::move(offer));
-  for (PassOffer& offer : near_drops_passes(gpu->optics)) offers.push_back(std::move(offer));
+  for (PassOffer& offer : near_drops_passes()) offers.push_back(std::move(offer));
   for (PassOffer& offer : sprites_passes(gpu->optics, gpu->sums)) offers.push_back(std::move(offer));
   for (PassOffer& offer : snow_passes()) offers.push_back(std::move(offer));
   return offers;

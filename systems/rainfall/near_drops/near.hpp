@@ -18,9 +18,10 @@ struct NearChoice {
   float maps_share = 0.0f;  // of those, by maps
   float least_width_px = 1.0f;
   float least_distance_m = 0.0f, half_cube_m = 1e6f;
-  double expected = 0.0;  // drops in view, on average
+  double expected = 0.0;  // drops whose ways touch the view, on average, or somewhat more
 };
-// The least width is that asked for, or as much more as keeps to the most drops; so it does not depend on luck.
+// The least width is that asked for, or as much more as keeps to the most drops; so it does not depend on luck. Those
+// that are less wide the field draws.
 NearChoice near_choice(const Frame&);
 // near_choice of near_choice.glsl; all zero where nobody draws near drops.
 glm::vec4 near_uniform(const NearChoice&);

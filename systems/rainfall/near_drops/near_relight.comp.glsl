@@ -8,8 +8,8 @@ layout(local_size_x = 64) in;
 
 layout(std430, binding = NEAR_MAPS_BINDING) readonly buffer NearMaps { uint maps[]; };
 layout(std430, binding = NEAR_CELLS_BINDING) readonly buffer NearCells { uint stamps[]; };
-// Of each cell first the image, then a row of column means.
-layout(std430, binding = NEAR_IMAGES_BINDING) buffer NearImages { uvec2 images[]; };
+// Of each cell first the image, then a row of column means. Coherent: columns are summed of what others wrote.
+layout(std430, binding = NEAR_IMAGES_BINDING) coherent buffer NearImages { uvec2 images[]; };
 
 vec3 direction(vec2 p) {
   vec3 n = vec3(p, 1.0 - abs(p.x) - abs(p.y));

@@ -51,7 +51,7 @@ void find_shadow(uint i) {
 vec3 given(NearLampGpu lamp, vec3 place, out vec3 to_lamp) {
   bool directional = lamp.direction_kind.w == float(LIGHT_DIRECTIONAL);
   to_lamp = directional ? -lamp.direction_kind.xyz * 1e4 : lamp.position_range.xyz - place;
-  float d2 = dot(to_lamp, to_lamp);
+  float d2 = max(dot(to_lamp, to_lamp), 1e-6);
   if (directional) return lamp.intensity_radius.rgb;
   float cone = spot_attenuation(-dot(to_lamp, lamp.direction_kind.xyz) * inversesqrt(d2), lamp.cone_shadow.x,
                                 lamp.cone_shadow.y);
@@ -79,7 +79,7 @@ void main() {
     vec3 irradiance = PI * all_round * surface.occlusion;
     for (int i = 0; i < lamp_count; ++i) {
       vec3 to_lamp, illuminance = given(lamps[i], place, to_lamp);
-      float cosine = dot(surface.normal, to_lamp) * inversesqrt(dot(to_lamp, to_lamp));
+      float cosine = dot(surface.normal, to_lamp) * inversesqrt(max(dot(to_lamp, to_lamp), 1e-6));
       illuminance *= max(cosine, 0.0);
       if (max(illuminance.r, max(illuminance.g, illuminance.b)) < 1e-3) continue;
 #ifdef SHADOWS
@@ -96,6 +96,7 @@ void main() {
     if (lamps[i].cone_shadow.w == 0.0) continue;
     vec3 to_lamp, illuminance = given(lamps[i], vec3(0.0), to_lamp);
     float d = length(to_lamp), radius = lamps[i].intensity_radius.w;
+    if (d < 1e-3) continue;  // the capture is in the lamp: it has no direction
     float width = max(2.0 * texel_rad, 1.7 * radius / max(d, radius));
     float turn2 = 2.0 - 2.0 * dot(unit, to_lamp / d);  // squared angle, about
     if (turn2 >= width * width || away < d - radius - 0.5) continue;

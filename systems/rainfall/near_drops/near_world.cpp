@@ -128,17 +128,22 @@ std::vector<NearLampGpu> lamps_at(const Frame& frame, const glm::dvec3& place_m)
   return lamps;
 }
 
+// Of all that the light of the capture depends on, so that a frame is the same drawn alone: lamps' ranges follow the
+// exposure, and which lamps have shadows the camera's place on a grid of 8 m (lighting/chosen_lights.cpp).
 std::uint64_t lighting_of(const Frame& frame, bool shadows) {
   std::uint64_t hash = 14695981039346656037ull;  // Fowler, Noll, Vo, 64 bits, 1a
   const auto add = [&](float v) { hash = (hash ^ std::bit_cast<std::uint32_t>(v)) * 1099511628211ull; };
   const auto add3 = [&](const glm::vec3& v) { add(v.x), add(v.y), add(v.z); };
   for (const FrameLight& l : frame.lights) {
     add3(l.position_m), add3(l.direction), add3(l.intensity);
-    add(l.range_m), add(l.inner_cone_rad), add(l.outer_cone_rad), add(l.source_radius_m);
+    add(light_range_m(l, frame.camera.exposure_ev100)), add(l.inner_cone_rad), add(l.outer_cone_rad),
+        add(l.source_radius_m);
     add(static_cast<float>(l.kind)), add(l.lights_rain ? 1.0f : 0.0f);
+    add(shadows && l.casts_shadow ? 1.0f : 0.0f);
   }
   add3(frame.sky.zenith_cd_m2), add3(frame.sky.horizon_cd_m2), add(frame.sky.glow_height);
   add(shadows ? 1.0f : 0.0f);
+  if (shadows) add3(glm::vec3(glm::round(frame.camera.position_m / 8.0)));
   return hash;
 }
 
@@ -189,9 +194,11 @@ void update_near_world(NearWorld& world, const Frame& frame, int face_texels, fl
   if (world.face_texels != face_texels) make_targets(world, face_texels);
   const glm::i64vec3 cell(glm::round(frame.camera.position_m / double(step_m)));
   if (!world.captured || cell != world.cell || step_m != world.step_m ||
-      world.geometry_version != frame.geometry_version || world.scene != frame.scene) {
+      world.exposure_ev100 != frame.camera.exposure_ev100 || world.geometry_version != frame.geometry_version ||
+      world.scene != frame.scene) {
     world.cell = cell;
     world.step_m = step_m;
+    world.exposure_ev100 = frame.camera.exposure_ev100;
     world.place_m = glm::dvec3(cell) * double(step_m);
     world.geometry_version = frame.geometry_version;
     world.scene = frame.scene;

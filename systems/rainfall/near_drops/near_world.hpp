@@ -17,7 +17,7 @@ struct NearWorld {
   Buffer uniforms, lamps;
   int face_texels = 0;
   glm::i64vec3 cell{0};  // of the grid of places that captures are made at
-  float step_m = 0.0f;
+  float step_m = 0.0f, exposure_ev100 = 0.0f;
   glm::dvec3 place_m{0.0};  // world
   bool captured = false, lit = false, shadows = false;
   std::uint64_t geometry_version = 0, lighting = 0;
@@ -30,7 +30,8 @@ struct NearWorldPrograms {
   const Program& light;
 };
 
-// Captures again where the camera has come to another place of the grid of that step, or the geometry changed; lights
+// Captures again where the camera has come to another place of the grid of that step, or the geometry changed, or the
+// exposure (materials without light are as bright as the picture's white); lights
 // again where lamps or sky changed. Turning the camera does neither. The place is the grid's, not the camera's, so that
 // a picture does not depend on the way that the camera came. shadow_atlas may be null.
 void update_near_world(NearWorld&, const Frame&, int face_texels, float step_m, const Texture* shadow_atlas,

@@ -95,8 +95,8 @@ void set_world(const NearGpu& gpu, const Frame& frame, int world_is, const Progr
 void list_drops(NearGpu& gpu, PassContext& context, const NearChoice& choice, bool scene) {
   const Frame& frame = context.frame;
   const RainLayers layers = near_layers(frame, choice);
-  // Eight deviations above what is expected, and whoever looks in from outside.
-  const auto capacity = static_cast<std::uint32_t>(1.3 * choice.expected + 8.0 * std::sqrt(choice.expected) + 1024.0);
+  // Eight deviations above what is expected: the field leaves these drops out, so the list must hold them all.
+  const auto capacity = static_cast<std::uint32_t>(1.1 * choice.expected + 8.0 * std::sqrt(choice.expected) + 256.0);
   if (gpu.capacity < capacity) gpu.capacity = capacity;
   hold(gpu.list, gpu.capacity * sizeof(NearDropGpu));
   hold(gpu.profiles, std::size_t(gpu.capacity) * NEAR_COLUMNS * 8);
@@ -208,7 +208,7 @@ void draw_near_drops(NearGpu& gpu, PassContext& context) {
 
 }  // namespace
 
-std::vector<PassOffer> near_drops_passes(std::shared_ptr<RainOptics>) {
+std::vector<PassOffer> near_drops_passes() {
   auto gpu = std::make_shared<NearGpu>();
   newest = gpu;
   const std::string folder = "systems/rainfall/near_drops/";
@@ -271,7 +271,8 @@ NearStats near_stats() {
   if (!gpu) return {};
   Command command;
   if (gpu->command.bytes >= sizeof command) read_copy(gpu->command, &command, sizeof command);
-  return {gpu->world.captures, gpu->world.relights, std::min(command.count, gpu->capacity), command.cells_wanted};
+  return {gpu->world.captures, gpu->world.relights, std::min(command.count, gpu->capacity), command.cells_wanted,
+          command.count};
 }
 
 NearListed read_near_list() {

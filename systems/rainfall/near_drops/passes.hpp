@@ -4,21 +4,20 @@
 // slot `near` is read.
 
 #include <cstdint>
-#include <memory>
 #include <vector>
 
 #include "engine/graph/graph.hpp"
 #include "systems/frame.hpp"
 #include "systems/rainfall/near_drops/near_shared.h"
-#include "systems/rainfall/optics.hpp"
 
 namespace petrichor {
 
-std::vector<PassOffer> near_drops_passes(std::shared_ptr<RainOptics>);
+std::vector<PassOffer> near_drops_passes();
 
 struct NearStats {
   std::uint64_t captures = 0, relights = 0;  // of the world, since start
   std::uint32_t drops = 0, cells_made = 0;   // of the last frame
+  std::uint32_t found = 0;                   // more than `drops`: the list could not hold them
 };
 NearStats near_stats();  // of the graph made last; waits for the GPU
 
