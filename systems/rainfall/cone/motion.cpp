@@ -71,12 +71,12 @@ ConeFlow snow_flow(const ConeMotion& m, const SnowMotion& snow, const Snowfall& 
   return flow;
 }
 
-// Only where they are drawn: who never draws a cone pays for none.
-void prepare(const DoubleCone& set, float share, float mm_per_hour, bool snow) {
+// Only where they are drawn: who never draws a cone pays for none. Then both that the rate decides between, so that a
+// rate which changes has nothing to wait for.
+void prepare(const DoubleCone& set, float share, bool snow) {
   if (!(share > 0.0f)) return;
-  const ConeKinds kinds = cone_kinds(set.texture, mm_per_hour, snow);
-  shared_cone_textures(kinds.first);
-  shared_cone_textures(kinds.second);
+  for (const float least_or_most : {0.0f, 1000.0f})
+    shared_cone_textures(cone_kinds(set.texture, least_or_most, snow).first);
 }
 
 }  // namespace
@@ -108,8 +108,8 @@ void simulate_cone(Registry& registry, double time_s, double step_s) {
 
 void extract_cone(const Registry& registry, Frame& frame, double time_s) {
   const Source source = source_of(registry);
-  if (frame.rain) prepare(source.set, frame.rain->share(RainRung::double_cone), frame.rain->rain_mm_per_hour, false);
-  if (frame.snow) prepare(source.set, frame.snow->share(SnowRung::double_cone), frame.snow->snow_mm_per_hour, true);
+  if (frame.rain) prepare(source.set, frame.rain->share(RainRung::double_cone), false);
+  if (frame.snow) prepare(source.set, frame.snow->share(SnowRung::double_cone), true);
   const FrameCamera& camera = frame.camera;
   const auto* motion = source ? registry.find<ConeMotion>(source.entity) : nullptr;
   if (frame.rain) {
