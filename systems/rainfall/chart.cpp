@@ -80,8 +80,8 @@ Result<ChartPoint> point(Studio& studio, const Setting& setting, const Statistic
   std::vector<Picture> images;
   double drops = 0.0;
   for (int i = 0; i < moments; ++i) {
-    // What holds state sees the frames of a film, not leaps.
-    for (int before = 3; before > 0; --before) {
+    // What holds state (sprites as published) sees some frames of the film first.
+    for (int before = setting.published ? 20 : 3; before > 0; --before) {
       Frame f = studio.frame(moment(i) - before / 60.0);
       if (auto drawn = studio.draw(f); !drawn) return tl::unexpected(drawn.error());
     }

@@ -211,7 +211,8 @@ Frame Studio::frame(double time_s) {
   Frame f = stage_frame(width_, height_);
   f.number = ++number_;
   f.time_s = time_s;
-  if (last_s_ >= 0.0 && time_s > last_s_) f.step_s = static_cast<float>(time_s - last_s_);
+  // Moments are frames of one film; nobody drew those between them.
+  if (last_s_ >= 0.0 && time_s > last_s_) f.step_s = static_cast<float>(std::min(time_s - last_s_, 1.0 / 60.0));
   last_s_ = time_s;
   f.techniques = techniques_;
   context.time_s = time_s;

@@ -58,6 +58,8 @@ void animate(SpritesGpu& gpu, PassContext& context) {
   // What is not drawn need not be known, but for what integrates its state.
   const double fraction = sprites.published ? 1.0 : sprites.drawn_share();
   const SpriteClasses made = sprite_classes(rain, frame.camera.position_m, rain.share(RainRung::sprites) * fraction);
+  // Particles of other classes than there are now begin anew.
+  if (gpu.class_count != made.classes.size()) gpu.known = 0;
   gpu.class_count = static_cast<std::uint32_t>(made.classes.size());
   gpu.particles = made.particles;
   if (!sprites.published) gpu.known = 0;
