@@ -31,7 +31,8 @@ struct Ladder {
   std::string_view truth;          // what the rungs are compared with
   std::string_view error_measure;  // how
   std::vector<Rung> rungs;
-  // How much of the picture the effect can change in this frame, 0 to 1; 0: it is not there, and costs nothing.
+  // What the error of its rungs weighs in this frame, 0 to 1: about how much of the picture the effect can change. Rain
+  // and snow go by their rate, on a scale that is a guess; 0 is exact: it is not there, and costs nothing.
   std::function<double(const Frame&)> coverage;
   // False: the director leaves it as it is (it is no question of speed, or a change of it shows).
   bool directed = true;

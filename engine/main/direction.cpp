@@ -11,11 +11,39 @@
 namespace petrichor {
 namespace {
 
-constexpr float warm_up_mm_per_hour = 5.0f;
+constexpr float warm_up_rain_mm_per_hour = 5.0f, warm_up_snow_mm_per_hour = 1.0f;
 
 bool may_be_chosen(const Ladder& ladder, const Rung& rung) {
   return ladder.directed && usable(rung);
 }
+
+bool same(const Techniques& a, const Techniques& b) {
+  return std::equal(a.choices.begin(), a.choices.end(), b.choices.begin(), [](const Choice& x, const Choice& y) {
+    return x.rung == y.rung && x.from == y.from && x.blend == y.blend;
+  });
+}
+
+// Where it is dry it rains or snows while this lives, else the passes of rain and snow would be left out.
+template <class Component>
+class Pretend {
+ public:
+  Pretend(Registry& registry, float Component::*rate, float least) : registry_(registry), rate_(rate) {
+    registry.view<Component>().each([&](Entity entity, Component& component) {
+      rates_.emplace_back(entity, component.*rate);
+      component.*rate = std::max(component.*rate, least);
+    });
+  }
+  ~Pretend() {
+    for (const auto& [entity, rate] : rates_) registry_.get<Component>(entity).*rate_ = rate;
+  }
+  Pretend(const Pretend&) = delete;
+  Pretend& operator=(const Pretend&) = delete;
+
+ private:
+  Registry& registry_;
+  float Component::*rate_;
+  std::vector<std::pair<Entity, float>> rates_;
+};
 
 }  // namespace
 
@@ -35,13 +63,9 @@ Result<Direction> Direction::open(const Techniques& asked) {
   return direction;
 }
 
-Result<void> Direction::warm_up(Renderer& renderer, World& world, int width, int height) {
-  // Where it is dry it rains for these frames, else the passes of rain would be left out.
-  std::vector<std::pair<Entity, float>> rates;
-  world.registry().view<Emitter>().each([&](Entity entity, Emitter& emitter) {
-    rates.emplace_back(entity, emitter.rain_mm_per_hour);
-    emitter.rain_mm_per_hour = std::max(emitter.rain_mm_per_hour, warm_up_mm_per_hour);
-  });
+Result<void> Direction::warm_up(Renderer& renderer, World& world, double time_s, int width, int height) {
+  const Pretend rain(world.registry(), &Emitter::rain_mm_per_hour, warm_up_rain_mm_per_hour);
+  const Pretend snow(world.registry(), &Snowfall::snow_mm_per_hour, warm_up_snow_mm_per_hour);
   const Techniques before = world.techniques();
   Result<void> outcome;
   for (const Ladder& ladder : director_.costs.ladders)
@@ -53,32 +77,41 @@ Result<void> Direction::warm_up(Renderer& renderer, World& world, int width, int
       world.techniques().set(ladder.effect, static_cast<std::uint8_t>(r));
       const Size size = drawn_size(world.techniques(), width, height);
       Frame frame;
-      world.extract(frame, 0, 0.0, size.width, size.height);
+      world.extract(frame, 0, time_s, size.width, size.height);
       if (auto drawn = draw(renderer, frame, false); !drawn) outcome = tl::unexpected(drawn.error());
       glFinish();
     }
   world.techniques() = before;
-  for (const auto& [entity, rate] : rates) world.registry().get<Emitter>(entity).rain_mm_per_hour = rate;
   return outcome;
 }
 
-void Direction::choose(World& world, double step_s) {
+void Direction::extract(World& world, Frame& frame, std::uint64_t number, double time_s, double step_s, int width,
+                        int height) {
+  const auto extract_it = [&] {
+    const Size size = drawn_size(world.techniques(), width, height);
+    world.extract(frame, number, time_s, size.width, size.height);
+  };
+  extract_it();
+  for (const Ladder& ladder : director_.costs.ladders)
+    input_.coverage[static_cast<std::size_t>(ladder.effect)] = std::clamp(ladder.coverage(frame), 0.0, 1.0);
   input_.budget_ms = budget_ms;
   input_.step_s = step_s;
   for (std::size_t e = 0; e < effect_count; ++e) input_.pinned[e] = world.chosen_by_user(static_cast<Effect>(e));
   output_ = direct(director_, input_);
-  world.techniques() = output_.techniques;
+  if (!same(world.techniques(), output_.techniques)) {
+    world.techniques() = output_.techniques;
+    extract_it();
+  }
   input_.frame_ms = 0.0;  // known once
   input_.passes = {};
 }
 
-void Direction::measured(const Frame& frame, double frame_ms, std::span<const Timing> passes) {
-  for (const Ladder& ladder : director_.costs.ladders)
-    input_.coverage[static_cast<std::size_t>(ladder.effect)] = std::clamp(ladder.coverage(frame), 0.0, 1.0);
+void Direction::measured(double frame_ms, std::span<const Timing> passes, bool gpu_times) {
   passes_.clear();
   for (const Timing& pass : passes) passes_.push_back({pass.name, pass.milliseconds});
   input_.frame_ms = frame_ms;
   input_.profiled = output_.profile_next;
+  input_.gpu_times = gpu_times;
   input_.passes = passes_;
 }
 

@@ -21,15 +21,17 @@ class Direction {
   double budget_ms = 0.0;  // 0: the director rests
 
   // Draws a frame by every rung that the director may choose, so that shaders are compiled and buffers made before a
-  // change needs them. After the first World::advance_to.
-  Result<void> warm_up(Renderer&, World&, int width, int height);
+  // change needs them. After World::advance_to(time_s); the frame extracted at time_s next is as if nothing had been.
+  Result<void> warm_up(Renderer&, World&, double time_s, int width, int height);
 
-  // Before World::extract: the techniques of this frame go to the world. step_s: since the frame before.
-  void choose(World&, double step_s);
+  // World::extract of a frame for a picture of width x height, by the techniques that are chosen for what is in it.
+  // step_s: since the frame before, as the viewer sees time.
+  void extract(World&, Frame&, std::uint64_t number, double time_s, double step_s, int width, int height);
   // Whether this frame's passes are to be timed.
   bool profile() const { return output_.profile_next; }
-  // After the frame: what it took (0: not known) and what its passes, or a recent frame's, took.
-  void measured(const Frame&, double frame_ms, std::span<const Timing> passes);
+  // After the frame: what it took (0: not known) and what its passes, or a recent frame's, took. gpu_times: those are
+  // the GPU's own, beside which the rest of the frame is work of the CPU.
+  void measured(double frame_ms, std::span<const Timing> passes, bool gpu_times);
 
   std::vector<DirectorNote> notes() const { return explain(director_); }
   nlohmann::json report() const;   // the notes

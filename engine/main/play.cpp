@@ -173,14 +173,13 @@ Result<void> play(const PlayOptions& options) {
     if (width > 0 && height > 0) {
       direction.budget_ms = state.directed ? state.budget_ms : 0.0;
       if (state.directed && !std::exchange(warm, true)) {
-        if (auto warmed = direction.warm_up(renderer, *world, width, height); !warmed)
+        if (auto warmed = direction.warm_up(renderer, *world, time_s, width, height); !warmed)
           state.errors = {warmed.error().message};
         just_warmed = true;
         last = Clock::now();  // that is no frame
       }
-      direction.choose(*world, std::min(spent_s, longest_frame_s));
-      const Size size = drawn_size(world->techniques(), width, height);
-      world->extract(frame, static_cast<std::uint64_t>(number), time_s, size.width, size.height);
+      direction.extract(*world, frame, static_cast<std::uint64_t>(number), time_s, std::min(spent_s, longest_frame_s),
+                        width, height);
       // On software OpenGL, looking at the times costs a few glFinishes; only then are they paid.
       const bool profile = state.directed ? direction.profile() : state.show_times && number % 8 == 0;
       const auto picture = draw(renderer, frame, profile);
@@ -199,7 +198,8 @@ Result<void> play(const PlayOptions& options) {
       for (const Timing& pass : timings) work_ms += pass.milliseconds;
       work_ms = timings.empty() ? 0.0 : std::max(work_ms, milliseconds_since(work_start));
     }
-    if (state.directed && work_ms > 0.0) direction.measured(frame, just_warmed ? 0.0 : work_ms, timings);
+    if (state.directed && work_ms > 0.0)
+      direction.measured(just_warmed ? 0.0 : work_ms, timings, renderer.timer->gpu_times_are_real());
     if (!options.stats.empty() && number > 0) {
       stats.frame_ms.push_back(state.directed ? work_ms : spent_s * 1000.0);
       stats.add(timings);

@@ -97,14 +97,18 @@ Result<void> render(const RenderOptions& options) {
     const bool first = number == job->frames.begin;
     if (directed && first) {
       if (auto advanced = world.advance_to(time_s); !advanced) return advanced;
-      if (auto warm = direction->warm_up(renderer, world, job->width, job->height); !warm) return warm;
+      if (auto warm = direction->warm_up(renderer, world, time_s, job->width, job->height); !warm) return warm;
     }
     if (directed) glFinish();  // the picture before is read
     const auto work_start = Clock::now();
     if (auto advanced = world.advance_to(time_s); !advanced) return advanced;
-    if (directed) direction->choose(world, first ? 0.0 : 1.0 / job->fps);
-    const Size size = drawn_size(world.techniques(), job->width, job->height);
-    world.extract(frame, static_cast<std::uint64_t>(number), time_s, size.width, size.height);
+    if (directed) {
+      direction->extract(world, frame, static_cast<std::uint64_t>(number), time_s, first ? 0.0 : 1.0 / job->fps,
+                         job->width, job->height);
+    } else {
+      const Size size = drawn_size(world.techniques(), job->width, job->height);
+      world.extract(frame, static_cast<std::uint64_t>(number), time_s, size.width, size.height);
+    }
 
     // Writing pictures takes longer than drawing them, and a GPU that waits lowers its clock: before a frame is timed
     // it is drawn again and again for a while.
@@ -131,7 +135,7 @@ Result<void> render(const RenderOptions& options) {
         if (auto again = draw(renderer, frame, true); !again) return tl::unexpected(again.error());
       const std::vector<Timing> timings = renderer.timer->collect();
       if (counts) stats.add(timings);
-      if (directed) direction->measured(frame, frame_ms, timings);
+      if (directed) direction->measured(frame_ms, timings, renderer.timer->gpu_times_are_real());
       drops_drawn = rain_stats(frame).drops_drawn;
     }
     Picture recorded{job->width, job->height, {}, {}};

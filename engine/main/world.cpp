@@ -229,8 +229,12 @@ void World::extract(Frame& frame, std::uint64_t number, double time_s, int width
   frame.scene = scene_;
   frame.affordable_drops = affordable_drops_;
   frame.techniques = techniques_;
-  if (extracted_s_ >= 0.0 && time_s > extracted_s_) frame.step_s = static_cast<float>(time_s - extracted_s_);
-  extracted_s_ = time_s;
+  if (time_s != extracted_s_) {
+    const bool follows = extracted_s_ >= 0.0 && time_s > extracted_s_;
+    step_s_ = follows ? static_cast<float>(time_s - extracted_s_) : Frame{}.step_s;
+    extracted_s_ = time_s;
+  }
+  frame.step_s = step_s_;
   if (!has_camera()) {
     frame.camera.position_m = {0.0, 1.7, 0.0};
     if (!std::exchange(told_of_no_camera_, true))

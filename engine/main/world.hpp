@@ -28,7 +28,8 @@ class World {
 
   // Simulates up to the first tick at or after time_s. `input` is what the person did since the last call.
   Result<void> advance_to(double time_s, const PlayerInput& input = {});
-  // The state at time_s (at most one tick before the newest), for frame `number` of width x height pixels.
+  // The state at time_s (at most one tick before the newest), for frame `number` of width x height pixels. Again at the
+  // same time it is the same, but for what techniques() and the size change.
   void extract(Frame&, std::uint64_t number, double time_s, int width, int height);
   // The budget of drops for emitters that name none. Part of the picture: the same on every run on a device.
   void set_affordable_drops(std::int32_t drops) { affordable_drops_ = drops; }
@@ -65,7 +66,8 @@ class World {
   std::int32_t affordable_drops_ = 4000000;
   Techniques techniques_;
   std::array<bool, effect_count> chosen_by_user_{};
-  double extracted_s_ = -1.0;  // time of the frame before
+  double extracted_s_ = -1.0;      // time of the newest frame
+  float step_s_ = Frame{}.step_s;  // from the frame before to it
   bool told_of_no_camera_ = false;
   std::int64_t tick_ = -1;  // the newest simulated tick
 };

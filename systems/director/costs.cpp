@@ -12,13 +12,16 @@ constexpr std::size_t full_size = static_cast<std::size_t>(ResolutionRung::full)
 constexpr double least_chart_ms = 1e-4;  // of smaller figures no ratio is made
 constexpr double wildest_ratio = 5.0;    // an effect's ratio to the chart against that of the whole frame
 constexpr double least_rest = 0.1;       // of a frame: there is always something besides the effects
+constexpr double wildest_scale = 1.5;    // of what a size saves, against the chart
+constexpr double least_surprise = 0.15;  // of a frame
+constexpr int doubts_to_distrust = 2;
 
 void add(CostSamples& samples, double ms) {
   samples.ms[samples.next] = ms;
   samples.next = (samples.next + 1) % static_cast<int>(samples.ms.size());
   samples.count = std::min(samples.count + 1, static_cast<int>(samples.ms.size()));
 }
-double median(const CostSamples& s) {
+double median(const CostSamples& s) {  // 0 for none
   return petrichor::median_of(std::vector<double>(s.ms.begin(), s.ms.begin() + s.count));
 }
 
@@ -36,7 +39,7 @@ double frame_ratio(const DirectorCosts& costs, const Techniques& techniques,
   if (!(chart_ms > least_chart_ms) || !(level_ms > 0.0)) return 0.0;
   for (const Ladder& ladder : costs.ladders)
     if (counts(ladder, coverage)) chart_ms += ladder.rungs[techniques[ladder.effect].rung].chart_ms;
-  return level_ms / (chart_ms * costs.scale[size]);
+  return std::max(level_ms - median(costs.beside), least_rest * level_ms) / (chart_ms * costs.scale[size]);
 }
 
 void collect_ratios(const DirectorCosts& costs, std::size_t e, std::vector<double>& ratios) {
@@ -83,6 +86,7 @@ DirectorCosts make_costs(std::vector<Ladder> ladders) {
   const double full_ms = sizes[full_size].chart_ms;
   for (std::size_t q = 0; q < resolution_rungs && full_ms > least_chart_ms; ++q)
     if (sizes[q].chart_ms > least_chart_ms) costs.scale[q] = std::min(sizes[q].chart_ms / full_ms, 1.0);
+  costs.chart_scale = costs.scale;
   return costs;
 }
 
@@ -124,13 +128,14 @@ CostTable cost_table(const DirectorCosts& costs, const Techniques& techniques,
     of_effects_ms += table.ms[e][techniques[ladder.effect].rung][size];
   }
   const double rest_ms = std::max(level_ms - of_effects_ms, least_rest * level_ms);
+  const double beside_ms = std::min(median(costs.beside), rest_ms);
   for (std::size_t q = 0; q < resolution_rungs; ++q)
-    table.ms[resolution_effect][q].fill(rest_ms * costs.scale[q] / costs.scale[size]);
+    table.ms[resolution_effect][q].fill(beside_ms + (rest_ms - beside_ms) * costs.scale[q] / costs.scale[size]);
   return table;
 }
 
 void learn_passes(DirectorCosts& costs, const Techniques& techniques, const std::array<double, effect_count>& coverage,
-                  std::span<const PassTime> passes, double frame_ms) {
+                  std::span<const PassTime> passes, double frame_ms, bool gpu_times) {
   if (passes.empty() || !(frame_ms > 0.0) || !std::isfinite(frame_ms)) return;
   double sum = 0.0;
   bool sane = true;
@@ -138,9 +143,11 @@ void learn_passes(DirectorCosts& costs, const Techniques& techniques, const std:
     sane &= std::isfinite(pass.ms) && pass.ms >= 0.0;
     sum += pass.ms;
   }
-  if (!sane || sum < 0.3 * frame_ms || sum > 2.0 * frame_ms) return distrust(costs, costs.trust > -10 ? 2 : 0);
+  if (!sane || sum <= (gpu_times ? 0.0 : 0.3 * frame_ms) || sum > 2.0 * frame_ms)
+    return distrust(costs, costs.trust > -10 ? 2 : 0);
   costs.trust = std::min(costs.trust + 1, 3);
   if (costs.trust < 2) return;
+  if (gpu_times) add(costs.beside, std::max(frame_ms - sum, 0.0));
   const auto size = techniques[Effect::resolution].rung;
   for (const Ladder& ladder : costs.ladders) {
     if (!counts(ladder, coverage)) continue;
@@ -165,21 +172,28 @@ void learn_change(DirectorCosts& costs, const std::array<int, effect_count>& fro
   // Each change answers for as much of the surprise as it was thought to matter.
   std::array<double, effect_count> weight{};
   double sum = 0.0;
-  bool effects_changed = false;
+  double dearer_ms = 0.0;  // by the chart
   for (std::size_t e = 0; e < effect_count; ++e) {
     if (from[e] == to[e]) continue;
     weight[e] = e == resolution_effect
                     ? std::abs(table.ms[e][size_to][size_to] - table.ms[e][size_from][size_from])
                     : std::abs(table.ms[e][to[e]][size_to] - table.ms[e][from[e]][size_from]) + 1e-3 * before_ms;
-    effects_changed |= e != resolution_effect;
+    const auto& rungs = costs.ladders[e].rungs;
+    if (e != resolution_effect)
+      dearer_ms += rungs[static_cast<std::size_t>(to[e])].chart_ms - rungs[static_cast<std::size_t>(from[e])].chart_ms;
     sum += weight[e];
   }
   if (!(sum > 0.0)) return;
   const double surprise = after_ms - expected_ms;
-  const double change = std::max(std::abs(expected_ms - before_ms), std::abs(after_ms - before_ms));
-  if (effects_changed && std::abs(surprise) > std::max(0.5 * change, std::max(0.15, noise) * before_ms) &&
-      costs.trust >= 2)
-    distrust(costs, 2 << std::min(costs.caught++, 9));  // each time it is caught it is believed later
+  const bool surprising = std::abs(surprise) > std::max(least_surprise, 1.5 * noise) * before_ms;
+  if (size_from == size_to && dearer_ms != 0.0) {
+    const int says = surprising ? (surprise * dearer_ms > 0.0 ? 1 : -1) : 0;
+    costs.doubt = says * costs.doubt > 0 ? costs.doubt + says : says;
+    if (std::abs(costs.doubt) >= doubts_to_distrust && costs.trust >= 2) {
+      costs.doubt = 0;
+      distrust(costs, 2 << std::min(costs.caught++, 9));  // each time it is caught it is believed later
+    }
+  }
   for (std::size_t e = 0; e < effect_count; ++e) {
     if (from[e] == to[e]) continue;
     const double share_ms = surprise * weight[e] / sum;
@@ -193,8 +207,10 @@ void learn_change(DirectorCosts& costs, const std::array<int, effect_count>& fro
       else
         costs.scale[size_from] /= factor;
       for (std::size_t q = resolution_rungs - 1; q-- > 0;)
-        costs.scale[q] = std::clamp(costs.scale[q], 0.05, 0.97 * costs.scale[q + 1]);
-    } else if (costs.trust < 2) {
+        costs.scale[q] = std::min(
+            std::clamp(costs.scale[q], costs.chart_scale[q] / wildest_scale, costs.chart_scale[q] * wildest_scale),
+            0.97 * costs.scale[q + 1]);
+    } else if (costs.trust < 2 && surprising) {  // else the chart's ratios are as good
       const double expected = table.ms[e][to[e]][size_to];
       const double found = std::clamp(expected + share_ms, 0.0, 3.0 * expected + 0.1 * before_ms);
       // Twice: one frame's noise does not outvote it. What the new rung cannot have saved, the old one cost.

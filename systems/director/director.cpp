@@ -267,7 +267,7 @@ void learn(Director& d, const DirectorInput& in) {
   // Times come a few frames late on hardware, so they wait until the frames are surely of these rungs.
   const bool settled = !any_fades(d) && d.settling == 0 && (in.profiled || d.recent_ms.size() >= 6);
   if (settled && !in.passes.empty()) {
-    learn_passes(d.costs, techniques_of(d), d.coverage, in.passes, in.frame_ms);
+    learn_passes(d.costs, techniques_of(d), d.coverage, in.passes, in.frame_ms, in.gpu_times);
     d.new_rungs = false;
   }
   if (const std::size_t needed = frames_to_know(d, 7.0); d.learning && d.recent_ms.size() >= needed)

@@ -24,6 +24,7 @@ struct DirectorInput {
   double frame_ms = 0.0;                        // the whole work of the last frame; 0 or not finite: not known
   bool profiled = false;                        // that frame was slowed by timing its passes
   std::span<const PassTime> passes;             // where the times of passes are known: of a recent frame
+  bool gpu_times = false;                       // they are a GPU's own; else wall time, and sum to the frame
   std::array<double, effect_count> coverage{};  // of the frame to be drawn: Ladder::coverage
   Techniques asked;                             // of effects that are pinned, and of those that are not directed
   std::array<bool, effect_count> pinned{};      // by the user

@@ -1,5 +1,6 @@
 #include "systems/rainfall/ladders.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "systems/frame.hpp"
@@ -36,7 +37,8 @@ Ladder rainfall_ladder() {
        "drop_field, with drops near the eye showing the world refracted (Rana)",
        {"rain_cells", "rain_splat", "rain_composite", "near_environment", "near_drops"}},
   };
-  // Light rain leaves most of the picture alone: an artist's scale, two thirds of it at 5 mm/h.
+  // Light rain leaves most of the picture alone. A scale by rate, chosen by eye (two thirds at 5 mm/h), no measure: how
+  // much of the picture is under roofs or too bright for streaks is not known here.
   l.coverage = [](const Frame& frame) {
     constexpr double most_of_it_mm_per_hour = 5.0;
     return rains(frame) ? 1.0 - std::exp(-frame.rain->rain_mm_per_hour / most_of_it_mm_per_hour) : 0.0;
@@ -54,7 +56,11 @@ Ladder snow_ladder() {
   l.rungs = {{"fog", "no single flakes: their haze alone", {}},
              {"double_cone", "textures of flakes scrolled on a double cone about the camera", {"snow_light", "snow_cone"}},
              {"field", "every flake, swaying and tumbling", {"snow_cells", "snow_field", "snow_composite"}}};
-  l.coverage = [](const Frame& frame) { return frame.snow && frame.snow->snow_mm_per_hour > 0.0f ? 1.0 : 0.0; };
+  // As of rain; flakes are seen by day and night, so that a tenth of the water does.
+  l.coverage = [](const Frame& frame) {
+    constexpr double most_of_it_mm_per_hour = 0.5;
+    return frame.snow ? 1.0 - std::exp(-std::max(frame.snow->snow_mm_per_hour, 0.0f) / most_of_it_mm_per_hour) : 0.0;
+  };
   return l;
 }
 

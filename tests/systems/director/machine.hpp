@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <functional>
 #include <random>
 #include <vector>
@@ -132,10 +133,10 @@ struct Rehearsal {
     return error;
   }
   double p95_of_noise() const { return 1.0 + 0.9 * machine.noise; }
-  // Of the frames from `first` on.
-  double p95(std::size_t first) const {
+  // Of the frames from `first` on, to before `end`.
+  double p95(std::size_t first, std::size_t end = SIZE_MAX) const {
     std::vector<double> ms;
-    for (std::size_t i = first; i < frames.size(); ++i) ms.push_back(frames[i].ms);
+    for (std::size_t i = first; i < std::min(end, frames.size()); ++i) ms.push_back(frames[i].ms);
     std::sort(ms.begin(), ms.end());
     return ms[ms.size() * 95 / 100];
   }
@@ -143,6 +144,16 @@ struct Rehearsal {
     int count = 0;
     for (const DirectorSwitch& s : director.history) count += s.time_s >= from_s;
     return count;
+  }
+  std::array<int, effect_count> rungs() const {
+    std::array<int, effect_count> all{};
+    for (std::size_t e = 0; e < effect_count; ++e) all[e] = output.techniques.choices[e].rung;
+    return all;
+  }
+  bool fading() const {
+    for (const Choice& c : output.techniques.choices)
+      if (c.blend < 1.0f) return true;
+    return false;
   }
   // The shortest time between two switches of one effect.
   double shortest_hold_s() const {
