@@ -18,6 +18,8 @@ constexpr double failed_within_s = 120.0, shortest_bar_s = 4.0, first_bar_s = 8.
                  proven_after_s = 180.0;
 constexpr double soon_s = 20.0, first_rest_s = 3.0, longest_rest_s = 120.0;
 constexpr double trade_penalty = 0.1, despair_after_s = 3.0;
+constexpr double outdone_by = 0.8;
+constexpr double load_gone = 0.75;     // of the frame that was expected after the failure
 constexpr double much_lighter = 0.85;  // the rest of the frame, for a climb that failed to be tried early
 constexpr int profile_every = 30, profile_soon = 6;
 constexpr std::size_t history_kept = 4096;
@@ -104,6 +106,14 @@ void bar_failed_climb(Director& d, std::size_t e, const CostTable& table) {
   effect.failed_rest_ms[rung] = e == index(Effect::resolution) ? d.level_ms : d.level_ms - table.ms[e][rung][size];
 }
 
+// Another is no more wrong on the chart, and cheaper there by so much that what this machine measures under changing
+// load must not reverse it.
+bool outdone(const Ladder& ladder, const Rung& rung) {
+  return std::any_of(ladder.rungs.begin(), ladder.rungs.end(), [&](const Rung& other) {
+    return usable(other) && other.chart_error <= rung.chart_error && other.chart_ms < outdone_by * rung.chart_ms;
+  });
+}
+
 Question question(const Director& d, const CostTable& table, double limit_ms) {
   Question q;
   q.ladders = &d.costs.ladders;
@@ -118,7 +128,7 @@ Question question(const Director& d, const CostTable& table, double limit_ms) {
     q.allowed[e][static_cast<std::size_t>(q.now[e])] = 1;
     if (!d.effects[e].free || !(d.coverage[e] > 0.0) || d.effects[e].since_switch_s < director_hold_s) continue;
     for (std::size_t r = 0; r < ladder.rungs.size(); ++r)
-      if (usable(ladder.rungs[r])) q.allowed[e][r] = 1;
+      if (usable(ladder.rungs[r]) && !outdone(ladder, ladder.rungs[r])) q.allowed[e][r] = 1;
   }
   return q;
 }
@@ -169,6 +179,7 @@ bool apply(Director& d, const Question& q, const Answer& answer, const CostTable
   d.learn_to = answer.rungs;
   d.learn_from_ms = d.level_ms;
   d.learn_expected_ms = answer.ms;
+  if (d.since_failure_s == 0.0) d.rest_from_ms = answer.ms;
   d.new_rungs = true;
   begin_regime(d, 2);
   return true;
@@ -327,7 +338,7 @@ void decide(Director& d, double step_s) {
     apply(d, q, answer, table, at_a_loss ? "over budget, and nothing that should help did" : "over budget");
     return;
   }
-  if (d.rest_s > 0.0) return;
+  if (d.rest_s > 0.0 && d.level_ms > load_gone * d.rest_from_ms) return;
   q.trade_penalty = trade_penalty;
   forbid_barred(d, q, table);
   const Answer answer = choose(q);

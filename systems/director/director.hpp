@@ -72,8 +72,9 @@ struct Director {
   double wish_s = 0.0;             // how long the same climb has been wanted
   int wish_frames = 0;
   std::array<int, effect_count> wish{};
-  // After a climb that failed nothing is tried for a while, longer each time.
-  double rest_s = 0.0, rested_s = 0.0, since_failure_s = 1e9;
+  // After a climb that failed nothing is tried for a while, longer each time, unless frames are much shorter than was
+  // expected then: the load that made it fail has gone.
+  double rest_s = 0.0, rested_s = 0.0, since_failure_s = 1e9, rest_from_ms = 0.0;
   std::int64_t profiled_at = -1000;
   bool new_rungs = true;  // no profile since the last change
   bool learning = false;  // the last change is not yet checked against the frames
