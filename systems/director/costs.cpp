@@ -15,6 +15,7 @@ constexpr double least_rest = 0.1;       // of a frame: there is always somethin
 constexpr double wildest_scale = 1.5;    // of what a size saves, against the chart
 constexpr double least_surprise = 0.15;  // of a frame
 constexpr int doubts_to_distrust = 2;
+constexpr double outdone_by = 0.8;
 
 void add(CostSamples& samples, double ms) {
   samples.ms[samples.next] = ms;
@@ -74,6 +75,12 @@ double median_of(std::vector<double> values) {
 
 bool usable(const Rung& rung) {
   return rung.stable && (rung.chart_ms > 0.0 || rung.chart_error > 0.0);
+}
+
+bool outdone(const Ladder& ladder, const Rung& rung) {
+  return std::any_of(ladder.rungs.begin(), ladder.rungs.end(), [&](const Rung& other) {
+    return usable(other) && other.chart_error <= rung.chart_error && other.chart_ms < outdone_by * rung.chart_ms;
+  });
 }
 
 DirectorCosts make_costs(std::vector<Ladder> ladders) {

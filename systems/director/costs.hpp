@@ -39,6 +39,9 @@ struct DirectorCosts {
 
 // A rung that the director may choose: stable, and with figures.
 bool usable(const Rung&);
+// Another rung is no more wrong on the chart, and cheaper there by so much that what this machine measures under
+// changing load must not reverse it: the director leaves such a rung alone too.
+bool outdone(const Ladder&, const Rung&);
 
 DirectorCosts make_costs(std::vector<Ladder> ladders);
 

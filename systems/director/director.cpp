@@ -18,7 +18,6 @@ constexpr double failed_within_s = 120.0, shortest_bar_s = 4.0, first_bar_s = 8.
                  proven_after_s = 180.0;
 constexpr double soon_s = 20.0, first_rest_s = 3.0, longest_rest_s = 120.0;
 constexpr double trade_penalty = 0.1, despair_after_s = 3.0;
-constexpr double outdone_by = 0.8;
 constexpr double load_gone = 0.75;     // of the frame that was expected after the failure
 constexpr double much_lighter = 0.85;  // the rest of the frame, for a climb that failed to be tried early
 constexpr int profile_every = 30, profile_soon = 6;
@@ -104,14 +103,6 @@ void bar_failed_climb(Director& d, std::size_t e, const CostTable& table) {
   effect.barred_s[rung] = effect.bar_s[rung];
   const std::size_t size = d.effects[index(Effect::resolution)].choice.rung;
   effect.failed_rest_ms[rung] = e == index(Effect::resolution) ? d.level_ms : d.level_ms - table.ms[e][rung][size];
-}
-
-// Another is no more wrong on the chart, and cheaper there by so much that what this machine measures under changing
-// load must not reverse it.
-bool outdone(const Ladder& ladder, const Rung& rung) {
-  return std::any_of(ladder.rungs.begin(), ladder.rungs.end(), [&](const Rung& other) {
-    return usable(other) && other.chart_error <= rung.chart_error && other.chart_ms < outdone_by * rung.chart_ms;
-  });
 }
 
 Question question(const Director& d, const CostTable& table, double limit_ms) {
