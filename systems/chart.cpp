@@ -205,6 +205,7 @@ Result<Chart> read_chart(const std::filesystem::path& csv) {
     for (std::size_t i = 9; i < columns.size(); ++i) chart.points.back().more.emplace_back(columns[i], value(i));
   }
   if (chart.points.empty()) return failure(fmt::format("{}: holds no points", csv.string()));
+  if (chart.title.empty()) return failure(fmt::format("{}: has no '# title: ' line", csv.string()));
   return chart;
 }
 

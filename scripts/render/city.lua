@@ -34,7 +34,8 @@ local resources = {
 local passes = {
   -- Geometry: the only rasterised passes.
   { pass = "gbuffer", depth = "depth", albedo = "albedo", normal = "normal", emissive = "emissive" },
-  { pass = "occlusion_map", occlusion_map = "occlusion_map" },
+  -- tolerance_deg: while the wind turns, the map is drawn anew once it has turned so far; half of it at 5 m is 9 cm.
+  { pass = "occlusion_map", occlusion_map = "occlusion_map", parameters = { tolerance_deg = 2 } },
   { pass = "shadow_maps", shadow_atlas = "shadow_atlas" },
 
   -- Light. threshold: of a white pixel; a lamp that adds less to a tile of pixels is left out there.
