@@ -14,6 +14,8 @@ namespace petrichor {
 namespace {
 
 struct DrawnMap {
+  GLuint texture = 0;  // of all maps
+  GLint index = 0;     // of its layer
   OcclusionPlacement placement;
   Framebuffer layer;
   bool drawn = false;
@@ -91,8 +93,10 @@ void redraw(PassContext& context, const DrawnMap& map) {
   upload_instances(scene, about_map);
   glBindFramebuffer(GL_FRAMEBUFFER, map.layer);
   glViewport(0, 0, p.texels, p.texels);
+  // Not by the framebuffer: on NVIDIA (driver 580) a map that was made after one of several layers had been freed then
+  // kept the old one's coarse depths, and roofs were missing in it.
   const float nothing = 0.0f;
-  glClearBufferfv(GL_DEPTH, 0, &nothing);
+  glClearTexSubImage(map.texture, 0, 0, 0, map.index, p.texels, p.texels, 1, GL_DEPTH_COMPONENT, GL_FLOAT, &nothing);
   const glm::mat4 clip = occlusion_clip(p, about_map.camera.position_m);
   const Program& program = context.program("depth");
   program.use();
@@ -111,6 +115,8 @@ void take_texture(MapState& state, const Texture& texture, bool fresh) {
     GLuint id = 0;
     glCreateFramebuffers(1, &id);
     state.maps[i].layer = Framebuffer(id);
+    state.maps[i].texture = texture.id;
+    state.maps[i].index = static_cast<GLint>(i);
     glNamedFramebufferTextureLayer(id, GL_DEPTH_ATTACHMENT, texture.id, 0, static_cast<GLint>(i));
     glNamedFramebufferDrawBuffer(id, GL_NONE);
     glNamedFramebufferReadBuffer(id, GL_NONE);
