@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <glm/gtc/quaternion.hpp>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -17,6 +18,15 @@
 namespace petrichor {
 
 struct GpuScene;  // systems/gpu_scene.hpp: meshes, materials and textures on the GPU
+
+// Where the rain lands: each in its own header, systems/<name>_frame.hpp, filled by the system of that name.
+struct FrameSplashes;
+struct FrameSplatter;
+struct FrameDrips;
+struct FrameRipples;
+struct FramePuddles;
+struct FrameWetness;
+struct FrameMirrors;
 
 struct FrameCamera {
   glm::dvec3 position_m{0.0};  // world
@@ -35,6 +45,7 @@ struct FrameInstance {
   std::uint32_t mesh;
   bool casts_shadow;
   glm::mat4 matrix;  // object -> world
+  std::uint32_t entity = 0;  // entity_index of where it comes from, for systems that mark instances
 };
 
 struct FrameLight {
@@ -78,6 +89,14 @@ struct Frame {
   std::optional<FrameRain> rain;            // absent, or its rate 0: no rain pass runs
   std::optional<Wind> wind;                 // as the scene says; absent: only what the rain and snow know of it
   std::optional<FrameSnow> snow;            // absent, or its rate 0: no snow pass runs
+  // Absent: there is none of it in the scene, and its passes do not run.
+  std::shared_ptr<const FrameSplashes> splashes;
+  std::shared_ptr<const FrameSplatter> splatter;
+  std::shared_ptr<const FrameDrips> drips;
+  std::shared_ptr<const FrameRipples> ripples;
+  std::shared_ptr<const FramePuddles> puddles;
+  std::shared_ptr<const FrameWetness> wetness;
+  std::shared_ptr<const FrameMirrors> mirrors;
   std::int32_t affordable_drops = 4000000;  // for an emitter that names no budget of its own
   GpuScene* scene = nullptr;
   FrameUniforms uniforms{};  // filled last, by finish_frame (systems/frame_gpu.hpp)

@@ -4,12 +4,15 @@
 
 #include "systems/atmosphere/extract.hpp"
 #include "systems/atmosphere/passes.hpp"
+#include "systems/drip/drip.hpp"
 #include "systems/geometry/extract.hpp"
 #include "systems/geometry/passes.hpp"
 #include "systems/image/passes.hpp"
 #include "systems/lighting/passes.hpp"
+#include "systems/mirror/mirror.hpp"
 #include "systems/occlusion/chart.hpp"
 #include "systems/occlusion/occlusion.hpp"
+#include "systems/puddle/puddle.hpp"
 #include "systems/rainfall/chart.hpp"
 #include "systems/rainfall/class_chart.hpp"
 #include "systems/rainfall/cone/cone.hpp"
@@ -23,8 +26,13 @@
 #include "systems/rainfall/snow/chart.hpp"
 #include "systems/rainfall/snow/extract.hpp"
 #include "systems/rainfall/sprites/sprites.hpp"
+#include "systems/reflection/reflection.hpp"
+#include "systems/ripple/ripple.hpp"
 #include "systems/scene/propagate.hpp"
+#include "systems/splash/splash.hpp"
+#include "systems/splatter/splatter.hpp"
 #include "systems/walker/walk.hpp"
+#include "systems/wetness/wetness.hpp"
 
 namespace petrichor {
 
@@ -71,6 +79,32 @@ std::vector<SystemEntry<SystemContext>> all_systems() {
        .writes = {"snow_motion"},
        .needs = {"snowfall"},
        .run = [](SystemContext& c) { simulate_snowfall(c.registry, c.time_s); }},
+
+      {.name = "drips",
+       .phase = Phase::simulate,
+       .reads = {"emitter", "wind", "drip_source", "world_transform", "mesh_instance", "time"},
+       .writes = {"drip_motion"},
+       .needs = {"drip_source"},
+       .run = [](SystemContext& c) { simulate_drips(c.registry, c.models, c.time_s, c.step_s); }},
+      {.name = "puddles",
+       .phase = Phase::simulate,
+       .reads = {"emitter", "puddle", "time"},
+       .writes = {"puddle_water"},
+       .needs = {"puddle"},
+       .run = [](SystemContext& c) { simulate_puddles(c.registry, c.time_s, c.step_s); }},
+      {.name = "wetness",
+       .phase = Phase::simulate,
+       .reads = {"emitter", "wind", "time"},
+       .writes = {"wetness_history"},
+       .needs = {"emitter"},
+       .run = [](SystemContext& c) { simulate_wetness(c.registry, c.time_s, c.step_s); }},
+      {.name = "ripples",
+       .phase = Phase::simulate,
+       .reads = {"emitter", "rain_motion", "drip_motion", "time"},
+       .writes = {"ripple_history"},
+       .needs = {"emitter"},
+       .after = {"rainfall", "drips"},
+       .run = [](SystemContext& c) { simulate_ripples(c.registry, c.time_s, c.step_s); }},
 
       {.name = "propagate_transforms",
        .phase = Phase::propagate,
@@ -164,6 +198,54 @@ std::vector<SystemEntry<SystemContext>> all_systems() {
        .needs = {"emitter", "snowfall"},
        .after = {"extract_rainfall", "extract_snowfall"},
        .run = [](SystemContext& c) { extract_cone(c.registry, *c.frame, c.time_s); }},
+
+      // Where the rain lands.
+      {.name = "extract_drips",
+       .phase = Phase::extract,
+       .reads = {"drip_source", "drip_motion", "frame.camera"},
+       .writes = {"frame.drips"},
+       .needs = {"drip_source"},
+       .after = {"extract_camera"},
+       .run = [](SystemContext& c) { extract_drips(c.registry, *c.frame, c.time_s); }},
+      {.name = "extract_splashes",
+       .phase = Phase::extract,
+       .reads = {"emitter", "frame.camera", "frame.rain", "frame.drips"},
+       .writes = {"frame.splashes"},
+       .needs = {"emitter"},
+       .after = {"extract_rainfall", "extract_drips"},
+       .run = [](SystemContext& c) { extract_splashes(c.registry, *c.frame, c.time_s); }},
+      {.name = "extract_splatter",
+       .phase = Phase::extract,
+       .reads = {"frame.instances", "frame.rain"},
+       .writes = {"frame.splatter"},
+       .needs = {"emitter"},
+       .after = {"extract_instances", "extract_rainfall"},
+       .run = [](SystemContext& c) { extract_splatter(c.registry, *c.frame); }},
+      {.name = "extract_puddles",
+       .phase = Phase::extract,
+       .reads = {"puddle", "puddle_water", "world_transform"},
+       .writes = {"frame.puddles"},
+       .needs = {"puddle"},
+       .run = [](SystemContext& c) { extract_puddles(c.registry, *c.frame); }},
+      {.name = "extract_wetness",
+       .phase = Phase::extract,
+       .reads = {"emitter", "wetness_history"},
+       .writes = {"frame.wetness"},
+       .needs = {"emitter"},
+       .run = [](SystemContext& c) { extract_wetness(c.registry, *c.frame, c.time_s); }},
+      {.name = "extract_ripples",
+       .phase = Phase::extract,
+       .reads = {"emitter", "ripple_history", "frame.camera", "frame.rain", "frame.drips", "frame.puddles"},
+       .writes = {"frame.ripples"},
+       .needs = {"emitter"},
+       .after = {"extract_rainfall", "extract_drips", "extract_puddles"},
+       .run = [](SystemContext& c) { extract_ripples(c.registry, *c.frame, c.time_s); }},
+      {.name = "extract_mirrors",
+       .phase = Phase::extract,
+       .reads = {"frame.camera", "frame.instances", "frame.puddles", "world_transform"},
+       .writes = {"frame.mirrors"},
+       .after = {"extract_camera", "extract_instances", "extract_puddles"},
+       .run = [](SystemContext& c) { extract_mirrors(c.registry, *c.frame); }},
   };
 }
 
@@ -173,8 +255,11 @@ std::vector<std::string_view> outside_resources() {
 
 std::vector<PassOffer> all_passes() {
   std::vector<PassOffer> all;
-  for (std::vector<PassOffer> some : {geometry_passes(), occlusion_passes(), lighting_passes(), atmosphere_passes(),
-                                      rainfall_passes(), image_passes()})
+  const DropPainting painting;
+  for (std::vector<PassOffer> some :
+       {geometry_passes(), occlusion_passes(), lighting_passes(), atmosphere_passes(), rainfall_passes(painting),
+        splash_passes(painting), splatter_passes(painting), drip_passes(painting), ripple_passes(), puddle_passes(),
+        wetness_passes(), reflection_passes(), mirror_passes(), image_passes()})
     all.insert(all.end(), std::make_move_iterator(some.begin()), std::make_move_iterator(some.end()));
   return all;
 }
@@ -186,6 +271,15 @@ std::vector<Ladder> all_ladders() {
   all.push_back(streaks_ladder());
   all.push_back(near_drops_ladder());
   all.push_back(occlusion_ladder());
+  all.push_back(splashes_ladder());
+  all.push_back(splatter_ladder());
+  all.push_back(halos_ladder());
+  all.push_back(drips_ladder());
+  all.push_back(ripples_ladder());
+  all.push_back(puddles_ladder());
+  all.push_back(wetness_ladder());
+  all.push_back(reflections_ladder());
+  all.push_back(probes_ladder());
   all.push_back(antialias_ladder());
   all.push_back(resolution_ladder());
   return all;
@@ -208,6 +302,13 @@ std::vector<ChartOffer> all_charts() {
       {"classes", "how many size classes of drops are enough", chart_classes},
       {"occlusion", "maps of shelter against rays, on a street of awnings and in the town", chart_shelter},
       {"streaks", "size of the streak table against its error, and what nearest-four reading costs", chart_streaks},
+      {"splashes", "splashes of the rain, against every impact", chart_splashes},
+      {"halos", "mist of splashes along outlines, by fins and by a thin layer", chart_halos},
+      {"drips", "drops that fall from edges", chart_drips},
+      {"ripples", "rings on water, against the spectral solution", chart_ripples},
+      {"puddles", "standing water, against a fine balance", chart_puddles},
+      {"wetness", "films of water on surfaces, against rays", chart_wetness},
+      {"reflections", "what wet ground mirrors, against rays", chart_reflections},
       {"near_drops", "drops near the eye, by maps and by closed form, against traced ones", chart_near_drops},
   };
 }

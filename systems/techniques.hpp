@@ -10,13 +10,26 @@ namespace petrichor {
 
 // The effects that have a ladder (systems/ladder.hpp), and their rungs, cheapest first. The order is that of
 // all_ladders(), which gives them names, meanings, errors and costs.
-enum class Effect : std::uint8_t { rainfall, snow, streaks, near_drops, occlusion, antialias, resolution, count };
+enum class Effect : std::uint8_t {
+  rainfall, snow, streaks, near_drops, occlusion,
+  splashes, splatter, halos, drips, ripples, puddles, wetness, reflections, probes,
+  antialias, resolution, count
+};
 
 enum class RainRung : std::uint8_t { fog, double_cone, composite, sprites, drop_field, full_field, near_drops, count };
 enum class SnowRung : std::uint8_t { fog, double_cone, field, count };
 enum class StreakRung : std::uint8_t { even, nearest, table, count };          // light along a streak
 enum class NearDropRung : std::uint8_t { off, maps, closed_form, count };      // of RainRung::near_drops
 enum class OcclusionRung : std::uint8_t { vertical, tilted, jittered, count };  // maps of shelter
+enum class SplashRung : std::uint8_t { none, random, field, secondary, count };
+enum class SplatterRung : std::uint8_t { none, shells, count };
+enum class HaloRung : std::uint8_t { none, layer, fins, count };
+enum class DripRung : std::uint8_t { none, billboards, streaks, refracting, count };
+enum class RippleRung : std::uint8_t { none, rings, euler, verlet5, verlet9, near_tile, count };
+enum class PuddleRung : std::uint8_t { none, masks, filled, count };
+enum class WetnessRung : std::uint8_t { none, everywhere, sheltered, flowing, count };
+enum class ReflectionRung : std::uint8_t { environment, toyshop, impostors, screen_space, planar, count };
+enum class ProbeRung : std::uint8_t { shared, moving, count };  // what moving objects mirror
 enum class AntialiasRung : std::uint8_t { off, edges, count };
 enum class ResolutionRung : std::uint8_t { half, two_thirds, full, count };
 
@@ -38,6 +51,15 @@ struct Techniques {
     set(Effect::streaks, StreakRung::table);
     set(Effect::near_drops, NearDropRung::closed_form);
     set(Effect::occlusion, OcclusionRung::tilted);
+    set(Effect::splashes, SplashRung::secondary);
+    set(Effect::splatter, SplatterRung::shells);
+    set(Effect::halos, HaloRung::fins);
+    set(Effect::drips, DripRung::refracting);
+    set(Effect::ripples, RippleRung::near_tile);
+    set(Effect::puddles, PuddleRung::filled);
+    set(Effect::wetness, WetnessRung::flowing);
+    set(Effect::reflections, ReflectionRung::planar);
+    set(Effect::probes, ProbeRung::moving);
     set(Effect::antialias, AntialiasRung::edges);
     set(Effect::resolution, ResolutionRung::full);
   }

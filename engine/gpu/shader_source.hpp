@@ -13,7 +13,7 @@
 namespace petrichor {
 
 struct SourceFile {
-  std::string name;            // as asked for: "systems/rainfall/field.comp.glsl"
+  std::string name;            // as asked for: "systems/drops/field.comp.glsl"
   std::filesystem::path path;  // on disk; empty: not found
 };
 

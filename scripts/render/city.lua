@@ -13,6 +13,16 @@ local resources = {
   normal   = { format = "rgba16" },           -- with roughness and occlusion
   emissive = { format = "r11f_g11f_b10f" },
 
+  -- Where water stands and what gets wet: hollows and kinds of material, and what lies there now.
+  water_mask = { format = "rg8" },
+  water      = { format = "rg16f" },             -- mm of standing water, mm of film
+  puddle_list = { format = "none" },
+  ripples    = { format = "rgba16f", width = 256, height = 256, layers = 2, persistent = true },
+  overhead   = { format = "rgba16f", width = 128, height = 128, persistent = true },  -- light from above, for splashes
+  mirrors    = { format = "rgba16f", scale = 1 / 2, layers = 2 },
+  probes     = { format = "rgba16f", width = 448, height = 65, layers = 4, persistent = true },
+  reflections = { format = "rgba16f", scale = 1 / 2 },
+
   -- Kept while nothing moves.
   -- Shelter from rain and snow; a layer for each map that occlusion=jittered may draw.
   occlusion_map = { format = "depth32f", width = 1024, height = 1024, layers = 8, persistent = true },

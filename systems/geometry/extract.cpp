@@ -103,8 +103,9 @@ void extract_camera(const Registry& registry, Frame& frame, double interpolation
 void extract_instances(const Registry& registry, Frame& frame) {
   frame.instances.clear();
   Hash hash;
-  registry.view<MeshInstance, WorldTransform>().each([&](const MeshInstance& mesh, const WorldTransform& world) {
-    frame.instances.push_back({mesh.model, mesh.mesh, mesh.casts_shadow, world.matrix});
+  registry.view<MeshInstance, WorldTransform>().each([&](Entity entity, const MeshInstance& mesh,
+                                                         const WorldTransform& world) {
+    frame.instances.push_back({mesh.model, mesh.mesh, mesh.casts_shadow, world.matrix, entity_index(entity)});
     hash.add((std::uint64_t{mesh.model} << 33) | (std::uint64_t{mesh.mesh} << 1) | (mesh.casts_shadow ? 1u : 0u));
     hash.add(world.matrix);
   });

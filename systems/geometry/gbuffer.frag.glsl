@@ -5,6 +5,7 @@
 layout(location = 0) out vec4 out_albedo;
 layout(location = 1) out vec4 out_normal;
 layout(location = 2) out vec3 out_emissive;
+layout(location = 3) out vec2 out_water_mask;  // hollow, kind: systems/puddle; only where it is asked for
 
 void main() {
   vec4 colour = base_colour();
@@ -14,5 +15,6 @@ void main() {
 #endif
   out_albedo = encode_albedo(s);
   out_normal = encode_normal(s);
+  out_water_mask = vec2(0.0);
   out_emissive = min(s.emissive, vec3(60000.0));
 }

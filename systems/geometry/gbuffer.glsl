@@ -3,6 +3,7 @@
 //   albedo    rgba8           rgb: square root of linear base colour (2 bits more in the darks), a: metallic
 //   normal    rgba16 (unorm)  rg: octahedral world normal, b: perceptual roughness, a: ambient occlusion
 //   emissive  r11f_g11f_b10f  cd/m2
+//   water_mask  rg8  optional: hollow that may hold water (0..1), kind of material (n / 255)
 #ifndef SYSTEMS_GEOMETRY_GBUFFER_GLSL
 #define SYSTEMS_GEOMETRY_GBUFFER_GLSL
 #include "systems/geometry/position.glsl"

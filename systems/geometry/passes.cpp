@@ -1,6 +1,7 @@
 #include "systems/geometry/passes.hpp"
 
 #include <array>
+#include <span>
 #include <string>
 
 #include "systems/frame.hpp"
@@ -39,12 +40,13 @@ struct DepthState {
 };
 
 void draw_gbuffer(PassContext& context) {
-  static constexpr std::array<std::string_view, 3> colours{"albedo", "normal", "emissive"};
+  static constexpr std::array<std::string_view, 4> all{"albedo", "normal", "emissive", "water_mask"};
+  const auto colours = std::span(all).first(context.has("water_mask") ? 4 : 3);
   context.bind_framebuffer(colours, "depth");
   const DepthState state(true);
   const float zero[4] = {0, 0, 0, 0};
   glClearBufferfv(GL_DEPTH, 0, zero);
-  for (GLint i = 0; i < 3; ++i) glClearBufferfv(GL_COLOR, i, zero);
+  for (GLint i = 0; i < static_cast<GLint>(colours.size()); ++i) glClearBufferfv(GL_COLOR, i, zero);
   if (!context.frame.scene) return;
   std::array<const Program*, material_variants> programs;
   for (unsigned v = 0; v < material_variants; ++v) programs[v] = &context.program(variant_name(v));
@@ -76,7 +78,8 @@ std::vector<PassOffer> geometry_passes() {
                     {{"depth", SlotAccess::write},
                      {"albedo", SlotAccess::write},
                      {"normal", SlotAccess::write},
-                     {"emissive", SlotAccess::write}},
+                     {"emissive", SlotAccess::write},
+                     {"water_mask", SlotAccess::write, true}},
                     {},
                     gbuffer_shaders(),
                     {},

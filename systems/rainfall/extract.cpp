@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "systems/first_of.hpp"
-#include "systems/rainfall/drop_physics.hpp"
-#include "systems/rainfall/layers.hpp"
+#include "systems/drops/drop_physics.hpp"
+#include "systems/drops/layers.hpp"
 
 namespace petrichor {
 namespace {

@@ -6,7 +6,7 @@
 #include "components/weather.hpp"
 #include "engine/ecs/registry.hpp"
 #include "systems/frame.hpp"
-#include "systems/rainfall/drop_sizes.hpp"
+#include "systems/drops/drop_sizes.hpp"
 #include "systems/wind_motion.hpp"
 
 namespace petrichor {

@@ -1,6 +1,6 @@
 #include "systems/rainfall/light_volume.hpp"
 
-#include "systems/rainfall/rays.hpp"
+#include "systems/drops/rays.hpp"
 
 namespace petrichor {
 

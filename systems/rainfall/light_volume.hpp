@@ -4,7 +4,7 @@
 #include <memory>
 
 #include "engine/graph/graph.hpp"
-#include "systems/rainfall/optics.hpp"
+#include "systems/drops/optics.hpp"
 
 namespace petrichor {
 

@@ -6,9 +6,9 @@
 
 #include "engine/gpu/objects.hpp"
 #include "engine/gpu/shader.hpp"
-#include "systems/rainfall/drop_sizes.hpp"
+#include "systems/drops/drop_sizes.hpp"
 #include "systems/rainfall/extract.hpp"
-#include "systems/rainfall/layers.hpp"
+#include "systems/drops/layers.hpp"
 
 namespace petrichor {
 namespace {

@@ -6,14 +6,14 @@
 #include <memory>
 #include <string>
 
-#include "systems/rainfall/composite.hpp"
+#include "systems/drops/composite.hpp"
 #include "systems/rainfall/cone/passes.hpp"
 #include "systems/rainfall/layered/passes.hpp"
-#include "systems/rainfall/layers.hpp"
+#include "systems/drops/layers.hpp"
 #include "systems/rainfall/light_volume.hpp"
 #include "systems/rainfall/near_drops/near.hpp"
 #include "systems/rainfall/near_drops/passes.hpp"
-#include "systems/rainfall/lists.hpp"
+#include "systems/drops/lists.hpp"
 #include "systems/rainfall/snow/passes.hpp"
 #include "systems/rainfall/sprites/passes.hpp"
 #include "systems/rainfall/streaks/gpu.hpp"
@@ -162,21 +162,26 @@ void splat(RainGpu& gpu, PassContext& context) {
 
 void composite(RainGpu& gpu, PassContext& context) {
   const Frame& frame = context.frame;
-  const FrameSprites& sprites = frame.rain->sprites;
   const bool has_sprites = draws_sprites(frame);
+  const FrameSprites sprites = has_sprites ? frame.rain->sprites : FrameSprites{};
   if (has_sprites && sprites.hide_background) clear_texture(context.texture("colour"), {0.0f, 0.0f, 0.0f, 1.0f});
-  const float share =
-      frame.rain->field_share() + (has_sprites ? frame.rain->share(RainRung::sprites) * sprites.drawn_share() : 0.0f);
+  // Of what is too near to be drawn singly. Without falling rain there may still be drips.
+  float near_extinction = 0.0f;
+  if (frame.rain) {
+    const float share =
+        frame.rain->field_share() + (has_sprites ? frame.rain->share(RainRung::sprites) * sprites.drawn_share() : 0.0f);
+    near_extinction = share * frame.rain->drawn_extinction_per_m * distances(frame).x;
+  }
   bind_rain_optics(*gpu.optics, frame);
-  lay_over(*gpu.sums, context, *gpu.optics, share * frame.rain->drawn_extinction_per_m * distances(frame).x);
+  lay_over(*gpu.sums, context, *gpu.optics, near_extinction);
 }
 
 }  // namespace
 
-std::vector<PassOffer> rainfall_passes() {
+std::vector<PassOffer> rainfall_passes(const DropPainting& painting) {
   auto gpu = std::make_shared<RainGpu>();
-  gpu->optics = std::make_shared<RainOptics>();
-  gpu->sums = std::make_shared<RainSums>();
+  gpu->optics = painting.optics;
+  gpu->sums = painting.sums;
   newest = gpu;
   std::vector<PassOffer> offers(3);
   offers[0].name = "rain_cells";
@@ -201,7 +206,9 @@ std::vector<PassOffer> rainfall_passes() {
   offers[2].name = "rain_composite";
   offers[2].meaning = "lays the drops over the picture";
   offer_composite(offers[2], false);
-  offers[2].wanted = [](const Frame& frame) { return rains(frame) || draws_sprites(frame); };
+  offers[2].wanted = [](const Frame& frame) {
+    return rains(frame) || draws_sprites(frame) || frame.splashes || frame.drips;
+  };
   offers[2].execute = [gpu](PassContext& context) { composite(*gpu, context); };
   offers.push_back(rain_light_pass(gpu->optics));
   for (PassOffer& offer : cone_passes(gpu->optics)) offers.push_back(std::move(offer));

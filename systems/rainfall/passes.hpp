@@ -7,11 +7,12 @@
 #include <vector>
 
 #include "engine/graph/graph.hpp"
+#include "systems/drops/painting.hpp"
 #include "systems/frame.hpp"
 
 namespace petrichor {
 
-std::vector<PassOffer> rainfall_passes();  // of all techniques
+std::vector<PassOffer> rainfall_passes(const DropPainting&);  // of all techniques
 
 struct RainStats {
   std::uint32_t drops_drawn =

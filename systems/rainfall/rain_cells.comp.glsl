@@ -3,8 +3,8 @@
 // count of their drops and the lamps that matter to them.
 layout(local_size_x = 64) in;
 #include "systems/frame.glsl"
-#include "systems/rainfall/field.glsl"
-#include "systems/rainfall/cell_lights.glsl"
+#include "systems/drops/field.glsl"
+#include "systems/drops/cell_lights.glsl"
 
 layout(std430, binding = RAIN_CELLS_BINDING) writeonly buffer RainCells { RainCellGpu cells[]; };
 layout(std430, binding = RAIN_COMMAND_BINDING) buffer RainCommand {

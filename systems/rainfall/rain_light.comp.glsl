@@ -5,7 +5,7 @@
 layout(local_size_x = 8, local_size_y = 8) in;
 #define RAIN_LIGHT_WRITER
 #include "systems/rainfall/light_volume.glsl"
-#include "systems/rainfall/lamp_light.glsl"
+#include "systems/drops/lamp_light.glsl"
 
 layout(rgba16f, binding = 0) writeonly uniform image2DArray volume;
 uniform float least_radiance;  // output units: a lamp that can give less is left out

@@ -4,7 +4,7 @@
 #ifdef LAMPS
 #define BANDS
 #endif
-#include "systems/rainfall/raster.glsl"
+#include "systems/drops/raster.glsl"
 layout(local_size_x = RAIN_LINES_GROUP) in;
 
 layout(std430, binding = RAIN_STREAKS_BINDING) readonly buffer RainStreaks { RainStreakGpu streaks[]; };

@@ -1,7 +1,7 @@
 #version 450 core
 // Counts drops of the running field: those that fall through a level square during a step, or those in a box.
 layout(local_size_x = 64) in;
-#include "systems/rainfall/field.glsl"
+#include "systems/drops/field.glsl"
 
 layout(std430, binding = RAIN_COMMAND_BINDING) buffer RainCounts { uint counts[]; };  // by class
 uniform uint candidates;

@@ -3,9 +3,9 @@
 // software OpenGL takes rain_drops and rain_lines.
 layout(local_size_x = 64) in;
 #include "systems/rainfall/streak.glsl"
-#include "systems/rainfall/raster.glsl"
+#include "systems/drops/raster.glsl"
 #include "systems/rainfall/near_drops/near_choice.glsl"
-#include "systems/rainfall/streak_lists.glsl"
+#include "systems/drops/streak_lists.glsl"
 #include "systems/rainfall/streaks/lamp_bands.glsl"
 
 layout(std430, binding = RAIN_CELLS_BINDING) readonly buffer RainCells { RainCellGpu cells[]; };

@@ -4,9 +4,9 @@
 #include <nlohmann/json.hpp>
 #include <string_view>
 
-#include "systems/rainfall/drop_optics.hpp"
+#include "systems/drops/drop_optics.hpp"
 #include "systems/rainfall/passes.hpp"
-#include "systems/rainfall/rain_shared.h"
+#include "systems/drops/rain_shared.h"
 #include "systems/rainfall/snow/flake_optics.hpp"
 
 namespace petrichor {
@@ -76,7 +76,7 @@ PassOffer present_offer() {
   offer.meaning = "linear light to 8 bits";
   offer.slots = {{"colour", SlotAccess::read}, {"picture", SlotAccess::write}};
   offer.shaders = {
-      {"present", {{"systems/rainfall/rain_composite.vert.glsl", "systems/rainfall/stage_present.frag.glsl"}, {}}}};
+      {"present", {{"systems/drops/rain_composite.vert.glsl", "systems/rainfall/stage_present.frag.glsl"}, {}}}};
   const auto vertices = std::make_shared<VertexArray>();
   offer.execute = [vertices](PassContext& context) {
     if (!*vertices) {
@@ -104,7 +104,7 @@ Result<std::unique_ptr<RainStage>> RainStage::make(bool software_gl, const Stage
 }
 
 Result<void> RainStage::load() {
-  std::vector<PassOffer> offers = rainfall_passes();
+  std::vector<PassOffer> offers = rainfall_passes({});
   offers.push_back(backdrop_offer(set_));
   offers.push_back(map_offer(set_));
   offers.push_back(present_offer());

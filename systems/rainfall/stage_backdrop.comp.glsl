@@ -3,7 +3,7 @@
 // drops would show, by the same phase function and the same coefficient.
 layout(local_size_x = 8, local_size_y = 8) in;
 #include "systems/geometry/position.glsl"
-#include "systems/rainfall/lamp_light.glsl"
+#include "systems/drops/lamp_light.glsl"
 layout(rgba16f, binding = 0) writeonly uniform image2D colour;
 uniform vec3 wall;              // cd/m2
 uniform float wall_distance_m;  // along the axis

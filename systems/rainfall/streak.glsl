@@ -7,10 +7,10 @@
 layout(binding = 0) uniform sampler2D scene_depth;
 uniform bool use_occlusion;
 #endif
-#include "systems/rainfall/field.glsl"
+#include "systems/drops/field.glsl"
 
 #ifdef LAMPS
-#include "systems/rainfall/lamp_light.glsl"
+#include "systems/drops/lamp_light.glsl"
 #endif
 uniform vec3 distances;  // nearest axial distance, start and end of the fade, m
 

@@ -47,11 +47,12 @@ std::string box(const std::string& file) {
   return "";
 }
 
-// The folder of a phenomenon, "" for the files at the root of systems/ that all share.
+// The folder of a phenomenon, "" for the files at the root of systems/ and for systems/drops, which all share.
 std::string phenomenon(const std::string& file) {
   if (file.rfind("systems/", 0) != 0) return "";
   const auto slash = file.find('/', 8);
-  return slash == std::string::npos ? "" : file.substr(8, slash - 8);
+  const std::string folder = slash == std::string::npos ? "" : file.substr(8, slash - 8);
+  return folder == "drops" ? "" : folder;
 }
 
 const std::map<std::string, std::set<std::string>> allowed = {

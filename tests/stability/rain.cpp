@@ -7,7 +7,7 @@
 #include "engine/platform/context.hpp"
 #include "systems/rainfall/extract.hpp"
 #include "systems/rainfall/passes.hpp"
-#include "systems/rainfall/rain_shared.h"
+#include "systems/drops/rain_shared.h"
 #include "systems/rainfall/stage.hpp"
 
 namespace petrichor {

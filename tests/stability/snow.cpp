@@ -5,7 +5,7 @@
 #include <memory>
 
 #include "../systems/rainfall/snow_gl/fixture.hpp"
-#include "systems/rainfall/drop_physics.hpp"
+#include "systems/drops/drop_physics.hpp"
 
 namespace petrichor {
 namespace {

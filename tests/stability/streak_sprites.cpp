@@ -8,7 +8,7 @@
 
 #include "components/weather.hpp"
 #include "engine/platform/context.hpp"
-#include "systems/rainfall/drop_physics.hpp"
+#include "systems/drops/drop_physics.hpp"
 #include "systems/rainfall/extract.hpp"
 #include "systems/rainfall/passes.hpp"
 #include "systems/rainfall/sprites/passes.hpp"

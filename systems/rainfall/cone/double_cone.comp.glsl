@@ -7,7 +7,7 @@
 // Rows go by eights, for light and shelter that are looked up at their ends alone.
 layout(local_size_x = 32, local_size_y = 1) in;
 #include "systems/frame.glsl"
-#include "systems/rainfall/ambient.glsl"
+#include "systems/drops/ambient.glsl"
 #ifdef SCENE
 #include "systems/occlusion/occlusion.glsl"
 layout(binding = 0) uniform sampler2D scene_depth;

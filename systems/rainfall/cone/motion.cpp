@@ -5,7 +5,7 @@
 #include "components/view.hpp"
 #include "systems/first_of.hpp"
 #include "systems/rainfall/cone/cone.hpp"
-#include "systems/rainfall/drop_sizes.hpp"
+#include "systems/drops/drop_sizes.hpp"
 #include "systems/rainfall/extract.hpp"
 #include "systems/rainfall/snow/extract.hpp"
 #include "systems/rainfall/snow/flakes.hpp"

@@ -8,9 +8,9 @@
 
 #include "systems/rainfall/cone/cone.hpp"
 #include "systems/rainfall/cone/textures.hpp"
-#include "systems/rainfall/rays.hpp"
+#include "systems/drops/rays.hpp"
 #include "systems/rainfall/snow/flake_optics.hpp"
-#include "systems/rainfall/sums.hpp"
+#include "systems/drops/sums.hpp"
 
 namespace petrichor {
 namespace {

@@ -5,7 +5,7 @@
 #include <mutex>
 
 #include "engine/core/random.hpp"
-#include "systems/rainfall/drop_physics.hpp"
+#include "systems/drops/drop_physics.hpp"
 #include "systems/rainfall/snow/flakes.hpp"
 
 namespace petrichor {

@@ -10,7 +10,7 @@ layout(local_size_x = 8, local_size_y = 8) in;
 #include "systems/lighting/environment.glsl"
 #endif
 #include "systems/rainfall/layered/drop_shading.glsl"
-#include "systems/rainfall/lamp_light.glsl"
+#include "systems/drops/lamp_light.glsl"
 layout(binding = 0) uniform sampler2D scene_depth;
 uniform bool use_depth;
 layout(binding = 1) uniform usampler2D placement;

@@ -7,7 +7,7 @@
 
 #include "components/view.hpp"
 #include "systems/first_of.hpp"
-#include "systems/rainfall/drop_sizes.hpp"
+#include "systems/drops/drop_sizes.hpp"
 #include "systems/rainfall/extract.hpp"
 
 namespace petrichor {

@@ -9,8 +9,8 @@
 #include "systems/rainfall/layered/layered_shared.h"
 #include "systems/rainfall/layered/motion.hpp"
 #include "systems/rainfall/layered/textures.hpp"
-#include "systems/rainfall/rays.hpp"
-#include "systems/rainfall/sums.hpp"
+#include "systems/drops/rays.hpp"
+#include "systems/drops/sums.hpp"
 
 namespace petrichor {
 namespace {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "engine/graph/graph.hpp"
-#include "systems/rainfall/optics.hpp"
+#include "systems/drops/optics.hpp"
 
 namespace petrichor {
 

@@ -4,7 +4,7 @@
 layout(local_size_x = 8, local_size_y = 8) in;
 #include "systems/frame.glsl"
 #include "systems/rainfall/layered/layered_shared.h"
-#include "systems/rainfall/ambient.glsl"
+#include "systems/drops/ambient.glsl"
 #include "systems/rainfall/light_volume.glsl"
 #include "systems/occlusion/occlusion.glsl"
 layout(rgba16f, binding = 0) writeonly uniform image2DArray drop_light;  // shells x parts; output units (1 is white)

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "engine/core/random.hpp"
-#include "systems/rainfall/drop_physics.hpp"
+#include "systems/drops/drop_physics.hpp"
 #include "systems/rainfall/layered/motion.hpp"
 
 namespace petrichor {

@@ -6,7 +6,7 @@
 
 #include "components/techniques.hpp"
 #include "components/weather.hpp"
-#include "systems/rainfall/drop_optics.hpp"
+#include "systems/drops/drop_optics.hpp"
 
 namespace petrichor {
 namespace {

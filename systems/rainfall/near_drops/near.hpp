@@ -8,7 +8,7 @@
 
 #include "engine/ecs/registry.hpp"
 #include "systems/frame.hpp"
-#include "systems/rainfall/layers.hpp"
+#include "systems/drops/layers.hpp"
 #include "systems/rainfall/near_drops/near_shared.h"
 
 namespace petrichor {

@@ -10,7 +10,7 @@
 #include "systems/gpu_scene.hpp"
 #include "systems/rainfall/near_drops/near.hpp"
 #include "systems/rainfall/near_drops/near_world.hpp"
-#include "systems/rainfall/sums.hpp"
+#include "systems/drops/sums.hpp"
 
 namespace petrichor {
 namespace {
@@ -248,7 +248,7 @@ std::vector<PassOffer> near_drops_passes() {
       {"draw", {{folder + "near_draw.comp.glsl"}, {}}},
       {"draw_scene", {{folder + "near_draw.comp.glsl"}, {"SCENE"}}},
       {"over", {{folder + "near_over.comp.glsl"}, {}}},
-      {"over_raster", {{"systems/rainfall/rain_composite.vert.glsl", folder + "near_over.frag.glsl"}, {}}}};
+      {"over_raster", {{"systems/drops/rain_composite.vert.glsl", folder + "near_over.frag.glsl"}, {}}}};
   offers[1].wanted = wanted;
   offers[1].execute = [gpu](PassContext& context) { draw_near_drops(*gpu, context); };
   return offers;

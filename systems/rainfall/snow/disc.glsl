@@ -1,7 +1,7 @@
 // A flake wider than a pixel: a soft disc, denser in the middle, that moves from one place to the other.
 #ifndef SYSTEMS_RAINFALL_SNOW_DISC_GLSL
 #define SYSTEMS_RAINFALL_SNOW_DISC_GLSL
-#include "systems/rainfall/raster.glsl"
+#include "systems/drops/raster.glsl"
 #include "systems/rainfall/snow/snow_shared.h"
 
 // Coverage 1 - r^2 / R^2 times such a factor that its sum is `area`, in pixels; its mean over the way is closed form.

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "systems/rainfall/drop_physics.hpp"
+#include "systems/drops/drop_physics.hpp"
 #include "systems/rainfall/extract.hpp"
 #include "systems/rainfall/snow/flakes.hpp"
 

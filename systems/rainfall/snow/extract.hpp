@@ -6,7 +6,7 @@
 #include "engine/ecs/registry.hpp"
 #include "systems/first_of.hpp"
 #include "systems/frame.hpp"
-#include "systems/rainfall/layers.hpp"
+#include "systems/drops/layers.hpp"
 #include "systems/wind_motion.hpp"
 
 namespace petrichor {

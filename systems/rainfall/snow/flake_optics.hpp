@@ -6,7 +6,7 @@
 #include <glm/glm.hpp>
 #include <vector>
 
-#include "systems/rainfall/optics.hpp"
+#include "systems/drops/optics.hpp"
 
 namespace petrichor {
 

@@ -8,7 +8,7 @@
 #include <string>
 #include <string_view>
 
-#include "systems/rainfall/composite.hpp"
+#include "systems/drops/composite.hpp"
 #include "systems/rainfall/light_volume.hpp"
 #include "systems/rainfall/snow/extract.hpp"
 #include "systems/rainfall/snow/flake_optics.hpp"

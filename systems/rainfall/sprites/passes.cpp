@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "systems/rainfall/lists.hpp"
+#include "systems/drops/lists.hpp"
 #include "systems/rainfall/sprites/sprites.hpp"
 #include "systems/rainfall/streaks/gpu.hpp"
 

@@ -7,9 +7,9 @@
 
 #include "engine/graph/graph.hpp"
 #include "systems/frame.hpp"
-#include "systems/rainfall/optics.hpp"
+#include "systems/drops/optics.hpp"
 #include "systems/rainfall/sprites/sprites_shared.h"
-#include "systems/rainfall/sums.hpp"
+#include "systems/drops/sums.hpp"
 
 namespace petrichor {
 

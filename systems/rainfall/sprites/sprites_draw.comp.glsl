@@ -4,8 +4,8 @@
 #include "systems/rainfall/sprites/sprites_shared.h"
 layout(local_size_x = SPRITE_GROUP) in;
 #include "systems/rainfall/streak.glsl"
-#include "systems/rainfall/raster.glsl"
-#include "systems/rainfall/streak_lists.glsl"
+#include "systems/drops/raster.glsl"
+#include "systems/drops/streak_lists.glsl"
 #include "systems/rainfall/streaks/lamp_bands.glsl"
 
 layout(std430, binding = SPRITES_BINDING) readonly buffer Sprites { SpriteGpu sprites[]; };

@@ -2,7 +2,7 @@
 // Which lamps light the cells of the sprites' box.
 layout(local_size_x = 64) in;
 #include "systems/rainfall/sprites/sprites_shared.h"
-#include "systems/rainfall/cell_lights.glsl"
+#include "systems/drops/cell_lights.glsl"
 
 layout(std430, binding = SPRITE_LIGHTS_BINDING) writeonly buffer SpriteLights { SpriteLightsGpu light_cells[]; };
 uniform float box_m;

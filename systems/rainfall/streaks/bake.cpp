@@ -7,8 +7,8 @@
 #include <numbers>
 #include <thread>
 
-#include "systems/rainfall/drop_optics.hpp"
-#include "systems/rainfall/drop_physics.hpp"
+#include "systems/drops/drop_optics.hpp"
+#include "systems/drops/drop_physics.hpp"
 #include "systems/rainfall/streaks/drop_tracer.hpp"
 
 namespace petrichor {

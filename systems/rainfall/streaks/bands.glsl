@@ -4,7 +4,7 @@
 #ifndef SYSTEMS_RAINFALL_STREAKS_BANDS_GLSL
 #define SYSTEMS_RAINFALL_STREAKS_BANDS_GLSL
 #include "systems/frame.glsl"
-#include "systems/rainfall/rain_shared.h"
+#include "systems/drops/rain_shared.h"
 #include "systems/rainfall/streaks/streak_table.glsl"
 
 const float least_band_pixels = 4.0;

@@ -9,7 +9,7 @@
 #include <numbers>
 
 #include "engine/core/random.hpp"
-#include "systems/rainfall/drop_optics.hpp"
+#include "systems/drops/drop_optics.hpp"
 #include "systems/rainfall/streaks/bake.hpp"
 #include "systems/rainfall/streaks/drop_tracer.hpp"
 

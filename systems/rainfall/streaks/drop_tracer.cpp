@@ -4,7 +4,7 @@
 #include <cmath>
 #include <complex>
 
-#include "systems/rainfall/drop_optics.hpp"
+#include "systems/drops/drop_optics.hpp"
 
 namespace petrichor {
 namespace {

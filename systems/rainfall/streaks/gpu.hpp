@@ -6,7 +6,7 @@
 #include "engine/gpu/objects.hpp"
 #include "engine/gpu/shader.hpp"
 #include "systems/frame.hpp"
-#include "systems/rainfall/optics.hpp"
+#include "systems/drops/optics.hpp"
 #include "systems/rainfall/streaks/table.hpp"
 
 namespace petrichor {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "systems/rainfall/drop_optics.hpp"
+#include "systems/drops/drop_optics.hpp"
 
 namespace petrichor {
 namespace {

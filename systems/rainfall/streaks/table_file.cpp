@@ -5,7 +5,7 @@
 #include <cmath>
 #include <filesystem>
 
-#include "systems/rainfall/drop_optics.hpp"
+#include "systems/drops/drop_optics.hpp"
 #include "systems/rainfall/streaks/drop_shape.hpp"
 #include "systems/rainfall/streaks/table.hpp"
 

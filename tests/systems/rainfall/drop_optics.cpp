@@ -1,4 +1,4 @@
-#include "systems/rainfall/drop_optics.hpp"
+#include "systems/drops/drop_optics.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "systems/rainfall/drop_physics.hpp"
+#include "systems/drops/drop_physics.hpp"
 
 #include <gtest/gtest.h>
 

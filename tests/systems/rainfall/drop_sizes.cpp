@@ -1,10 +1,10 @@
-#include "systems/rainfall/drop_sizes.hpp"
+#include "systems/drops/drop_sizes.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "systems/rainfall/drop_physics.hpp"
+#include "systems/drops/drop_physics.hpp"
 
 namespace petrichor {
 namespace {

@@ -7,7 +7,7 @@
 #include <set>
 #include <tuple>
 
-#include "systems/rainfall/drop_sizes.hpp"
+#include "systems/drops/drop_sizes.hpp"
 #include "systems/rainfall/extract.hpp"
 
 namespace petrichor {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "engine/core/random.hpp"
-#include "systems/rainfall/layers.hpp"
+#include "systems/drops/layers.hpp"
 
 namespace petrichor {
 

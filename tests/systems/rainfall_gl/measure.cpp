@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "engine/platform/context.hpp"
-#include "systems/rainfall/drop_physics.hpp"
-#include "systems/rainfall/drop_sizes.hpp"
+#include "systems/drops/drop_physics.hpp"
+#include "systems/drops/drop_sizes.hpp"
 #include "systems/rainfall/extract.hpp"
 #include "tests/systems/rainfall/field.hpp"
 

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "systems/rainfall/drop_physics.hpp"
+#include "systems/drops/drop_physics.hpp"
 #include "systems/wind_motion.hpp"
 
 namespace petrichor {

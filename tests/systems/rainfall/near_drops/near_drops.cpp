@@ -7,7 +7,7 @@
 
 #include "engine/platform/context.hpp"
 #include "systems/gpu_scene.hpp"
-#include "systems/rainfall/drop_optics.hpp"
+#include "systems/drops/drop_optics.hpp"
 #include "systems/rainfall/extract.hpp"
 #include "systems/rainfall/near_drops/near_street.hpp"
 #include "systems/rainfall/near_drops/near_truth.hpp"

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "systems/rainfall/drop_optics.hpp"
+#include "systems/drops/drop_optics.hpp"
 #include "systems/rainfall/snow/flake_optics.hpp"
 
 namespace petrichor {

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "engine/core/random.hpp"
-#include "systems/rainfall/drop_optics.hpp"
-#include "systems/rainfall/drop_physics.hpp"
+#include "systems/drops/drop_optics.hpp"
+#include "systems/drops/drop_physics.hpp"
 #include "systems/rainfall/streaks/drop_tracer.hpp"
 
 namespace petrichor {

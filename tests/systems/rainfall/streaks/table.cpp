@@ -8,7 +8,7 @@
 #include <numbers>
 
 #include "engine/core/paths.hpp"
-#include "systems/rainfall/drop_optics.hpp"
+#include "systems/drops/drop_optics.hpp"
 #include "systems/rainfall/streaks/bake.hpp"
 
 namespace petrichor {

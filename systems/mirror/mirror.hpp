@@ -1,0 +1,19 @@
+#pragma once
+// Planar mirrors for panes and still puddles, and cube maps about moving objects (Tatarchuk and Isidoro 2006,
+// section 6.3).
+
+#include <vector>
+
+#include "engine/ecs/registry.hpp"
+#include "engine/graph/graph.hpp"
+#include "systems/chart.hpp"
+#include "systems/frame.hpp"
+#include "systems/ladder.hpp"
+
+namespace petrichor {
+
+std::vector<PassOffer> mirror_passes();
+void extract_mirrors(const Registry&, Frame&);
+Ladder probes_ladder();
+
+}  // namespace petrichor
