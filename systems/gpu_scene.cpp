@@ -6,6 +6,7 @@
 #include <cstring>
 #include <string_view>
 
+#include "engine/core/log.hpp"
 #include "systems/gpu_scene_impl.hpp"
 #include "systems/mesh_pack.hpp"
 
@@ -61,12 +62,29 @@ GLint wrap_mode(Wrap wrap) {
   return wrap == Wrap::repeat ? GL_REPEAT : wrap == Wrap::clamp ? GL_CLAMP_TO_EDGE : GL_MIRRORED_REPEAT;
 }
 
+// Its place in the table of wet materials; materials that take water alike share one.
+unsigned wet_kind(GpuScene::Impl& scene, const MaterialWater& water) {
+  if (!water.wets) return 0;
+  std::vector<WetMaterialGpu>& kinds = scene.wet_materials;
+  const auto same = [&](const WetMaterialGpu& k) {
+    return k.absorption_depth == water.gpu.absorption_depth && k.ripple == water.gpu.ripple;
+  };
+  auto found = std::find_if(kinds.begin() + 1, kinds.end(), same);
+  if (found == kinds.end() && kinds.size() == WET_MATERIAL_KINDS) {
+    log_warn("more than {} ways to take water among the materials; the rest is as the first", WET_MATERIAL_KINDS - 1);
+    return 1;
+  }
+  if (found == kinds.end()) found = kinds.insert(kinds.end(), water.gpu);
+  return static_cast<unsigned>(found - kinds.begin());
+}
+
 // Decides what the shader has to do, and gathers the textures. `texture_of` maps an image to its texture.
 template <class TextureOf>
-SceneMaterial describe(GpuScene::Impl& scene, const Material& m, TextureOf texture_of, MaterialGpu& gpu) {
+SceneMaterial describe(GpuScene::Impl& scene, const Material& m, const MaterialWater& water, TextureOf texture_of,
+                       MaterialGpu& gpu) {
   const std::array<const TextureUse*, MATERIAL_TEXTURES> uses{&m.base_colour_texture, &m.metallic_roughness_texture,
                                                               &m.normal_texture, &m.occlusion_texture,
-                                                              &m.emissive_texture};
+                                                              &m.emissive_texture,      &m.hollow_texture};
   SceneMaterial out{};
   out.alpha_mode = m.alpha_mode;
   out.double_sided = m.double_sided;
@@ -76,11 +94,20 @@ SceneMaterial describe(GpuScene::Impl& scene, const Material& m, TextureOf textu
   gpu.surface = {m.metallic, m.roughness, m.normal_scale, m.occlusion_strength};
   gpu.choices.y = m.double_sided ? 1.0f : 0.0f;
   gpu.choices.z = m.unlit ? 1.0f : 0.0f;
+  gpu.water = {water.hollow == Hollow::texcoord_1 ? 1.0f : 0.0f, water.hollow == Hollow::vertex_colour ? 1.0f : 0.0f,
+               static_cast<float>(wet_kind(scene, water)) / 255.0f, water.hollow == Hollow::texture ? 1.0f : 0.0f};
+  gpu.relief = {water.relief, water.relief_mean, 0.0f, 0.0f};
 
   const TextureUse* first = nullptr;
-  bool general = m.alpha_mode == AlphaMode::mask;
+  bool general = m.alpha_mode == AlphaMode::mask || water.hollow == Hollow::vertex_colour ||
+                 water.hollow == Hollow::texture;
   for (int slot = 0; slot < MATERIAL_TEXTURES; ++slot) {
     const TextureUse& use = *uses[slot];
+    if (slot == MATERIAL_HOLLOW && water.hollow != Hollow::texture) {
+      out.textures[slot] = scene.white.id;
+      out.samplers[slot] = scene.sampler({});
+      continue;
+    }
     const bool colour = slot == MATERIAL_BASE_COLOUR || slot == MATERIAL_EMISSIVE;
     out.textures[slot] = use.image == no_index ? (slot == MATERIAL_NORMAL ? scene.flat_normal.id : scene.white.id)
                                                : texture_of(use.image, colour);
@@ -186,14 +213,21 @@ std::uint32_t GpuScene::add(const Model& model) {
   Material plain;  // glTF's default material, for primitives that name none
   plain.metallic = 0.0f;
   materials.push_back(plain);
-  for (const Material& material : materials) {
+  // Whoever loads a model reads these first and says what is wrong with them.
+  std::vector<MaterialWater> waters =
+      read_material_water(model).value_or(std::vector<MaterialWater>(model.materials.size()));
+  waters.emplace_back();
+  for (std::size_t i = 0; i < materials.size(); ++i) {
     MaterialGpu gpu;
-    s.materials.push_back(describe(s, material, texture_of, gpu));
+    s.materials.push_back(describe(s, materials[i], waters[i], texture_of, gpu));
     const std::size_t at = s.material_bytes.size();
     s.material_bytes.resize(at + s.material_stride);
     std::memcpy(s.material_bytes.data() + at, &gpu, sizeof gpu);
   }
   upload(s.material_buffer, s.material_bytes.data(), s.material_bytes.size());
+  std::vector<WetMaterialGpu> table = s.wet_materials;
+  table.resize(WET_MATERIAL_KINDS);  // no kind reads beyond the end
+  upload(s.wet_material_buffer, std::span<const WetMaterialGpu>(table));
 
   std::vector<glm::vec3> positions;
   std::vector<PackedVertex> attributes;

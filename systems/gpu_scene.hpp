@@ -39,7 +39,7 @@ enum MaterialVariant : unsigned {
   variant_surface = 2,  // metallic-roughness, perhaps with occlusion in its red
   variant_normal = 4,
   variant_emissive = 8,
-  variant_general = 16,  // masked, two UV sets, differing transforms, an occlusion texture of its own
+  variant_general = 16,  // masked, two UV sets, differing transforms, occlusion or hollows by texture of their own
   material_variants = 17,
 };
 

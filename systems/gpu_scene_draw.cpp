@@ -59,6 +59,8 @@ void upload_instances(GpuScene& scene, const Frame& frame) {
   GpuScene::Impl& s = *scene.impl;
   s.items.clear();
   s.instances.clear();
+  if (s.wet_material_buffer.id)
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, WET_MATERIALS_BINDING, s.wet_material_buffer.id);
   for (std::size_t i = 0; i < frame.instances.size(); ++i) {
     const FrameInstance& in = frame.instances[i];
     glm::mat4 m = in.matrix;

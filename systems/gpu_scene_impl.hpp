@@ -7,6 +7,7 @@
 
 #include "systems/gpu_scene.hpp"
 #include "systems/material_shared.h"
+#include "systems/wet_materials.hpp"
 
 namespace petrichor {
 
@@ -71,6 +72,8 @@ struct GpuScene::Impl {
   std::vector<std::vector<SceneMesh>> models;
   std::vector<SceneMaterial> materials;
   std::vector<std::byte> material_bytes;
+  std::vector<WetMaterialGpu> wet_materials{WetMaterialGpu{}};  // the first never gets wet
+  Buffer wet_material_buffer;
 
   std::vector<SceneItem> items;  // of the frame
   std::vector<InstanceRows> instances;

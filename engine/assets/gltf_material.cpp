@@ -141,6 +141,18 @@ Material convert_material(Document& document, std::size_t index) {
   out.emissive_texture = convert_texture(document, member(raw, "emissiveTexture"), path + "/emissiveTexture");
   if (const json& extras = member(raw, "extras"); extras.is_object()) {
     out.extras_json = extras.dump(-1, ' ', false, json::error_handler_t::replace);
+    if (const json& hollow = member(member(extras, "water"), "texture"); hollow.is_object()) {
+      // Extras are nobody's to validate but ours.
+      const json& texture = member(hollow, "index");
+      const json& set = member(hollow, "texCoord");
+      const std::string place = path + "/extras/water/texture";
+      if (!texture.is_number_unsigned() || texture.get<std::uint64_t>() >= document.gltf->textures.size())
+        gltf_fail(place + "/index", "no texture of this file");
+      if (!set.is_null() && (!set.is_number_unsigned() || set.get<std::uint64_t>() > 1))
+        gltf_fail(place + "/texCoord", "neither 0 nor 1");
+      out.hollow_texture =
+          convert_texture(document, {{"index", texture}, {"texCoord", set.is_null() ? json(0) : set}}, place);
+    }
   }
   return out;
 }

@@ -53,6 +53,7 @@ struct Material {
   bool double_sided = false;
   bool unlit = false;  // KHR_materials_unlit: the base colour is what is seen, lights do not matter
   TextureUse base_colour_texture, metallic_roughness_texture, normal_texture, occlusion_texture, emissive_texture;
+  TextureUse hollow_texture;  // extras.water.texture: its red is the depth of hollows (systems/wet_materials.hpp)
   std::string extras_json;  // "" or a JSON object
 };
 

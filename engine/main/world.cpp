@@ -14,6 +14,7 @@
 #include "systems/rainfall/streaks/gpu.hpp"
 #include "systems/scene/propagate.hpp"
 #include "systems/scene/spawn.hpp"
+#include "systems/wet_materials.hpp"
 
 namespace petrichor {
 namespace {
@@ -86,6 +87,7 @@ void give_techniques(Registry& registry) {
     if (!registry.find<LayeredComposite>(entity)) registry.emplace<LayeredComposite>(entity);
     if (!registry.find<StreakSprites>(entity)) registry.emplace<StreakSprites>(entity);
     if (!registry.find<NearDrops>(entity)) registry.emplace<NearDrops>(entity);
+    if (!registry.find<WetGround>(entity)) registry.emplace<WetGround>(entity);
     if (!snows) registry.emplace<Snowfall>(entity);
   }
 }
@@ -103,6 +105,7 @@ Result<std::vector<Entity>> World::spawn(const fs::path& file) {
   for (const std::string& warning : loaded->warnings) log_warn("{}", warning);
   auto model = std::make_shared<Model>(std::move(*loaded));
   const auto index = static_cast<std::uint32_t>(models_.size());
+  if (auto water = read_material_water(*model); !water) return tl::unexpected(water.error());
   if (scene_) scene_->add(*model);
   // Pixels are on the GPU now; a city's worth of them need not stay here too.
   for (Image& image : model->images) image.pixels = {};

@@ -43,7 +43,8 @@ local resources = {
 
 local passes = {
   -- Geometry: the only rasterised passes.
-  { pass = "gbuffer", depth = "depth", albedo = "albedo", normal = "normal", emissive = "emissive" },
+  { pass = "gbuffer", depth = "depth", albedo = "albedo", normal = "normal", emissive = "emissive",
+    water_mask = "water_mask" },
   -- tolerance_deg: while the wind turns, the map is drawn anew once it has turned so far; half of it at 5 m is 9 cm.
   { pass = "occlusion_map", occlusion_map = "occlusion_map", parameters = { tolerance_deg = 2 } },
   { pass = "shadow_maps", shadow_atlas = "shadow_atlas" },

@@ -9,12 +9,13 @@ layout(location = 3) out vec2 out_water_mask;  // hollow, kind: systems/puddle; 
 
 void main() {
   vec4 colour = base_colour();
-  Surface s = material_surface(colour);
+  vec2 water_mask;
+  Surface s = material_surface(colour, water_mask);
 #if (MATERIAL_VARIANT & 16) != 0
   if (colour.a < material.emissive_cutoff.w) discard;
 #endif
   out_albedo = encode_albedo(s);
   out_normal = encode_normal(s);
-  out_water_mask = vec2(0.0);
+  out_water_mask = water_mask;
   out_emissive = min(s.emissive, vec3(60000.0));
 }

@@ -65,7 +65,8 @@ vec3 film_illuminance(vec3 position, vec3 normal, float matters) {
 
 void main() {
   vec4 colour = base_colour();
-  Surface s = material_surface(colour);
+  vec2 no_mask;
+  Surface s = material_surface(colour, no_mask);
   float distance_m = length(vertex_position);
   vec3 view = -vertex_position / max(distance_m, 1e-6);
   vec3 normal = dot(s.normal, view) < 0.0 ? -s.normal : s.normal;

@@ -17,6 +17,7 @@ layout(binding = MATERIAL_FIRST_UNIT + MATERIAL_SURFACE) uniform sampler2D surfa
 layout(binding = MATERIAL_FIRST_UNIT + MATERIAL_NORMAL) uniform sampler2D normal_texture;
 layout(binding = MATERIAL_FIRST_UNIT + MATERIAL_OCCLUSION) uniform sampler2D occlusion_texture;
 layout(binding = MATERIAL_FIRST_UNIT + MATERIAL_EMISSIVE) uniform sampler2D emissive_texture;
+layout(binding = MATERIAL_FIRST_UNIT + MATERIAL_HOLLOW) uniform sampler2D hollow_texture;
 
 layout(location = 0) in vec3 vertex_normal;
 layout(location = 1) in vec4 vertex_tangent;
@@ -36,6 +37,9 @@ vec2 placed_uv(int slot) {
 // Linear, with alpha.
 vec4 base_colour() {
   vec4 colour = material.base_colour * vertex_colour;
+#if (MATERIAL_VARIANT & 16) != 0
+  if (material.water.y > 0.0) colour = material.base_colour * vec4(1.0, 1.0, 1.0, vertex_colour.a);
+#endif
 #if MATERIAL_HAS(1)
   colour *= texture(base_colour_texture, placed_uv(MATERIAL_BASE_COLOUR));
 #endif
@@ -60,8 +64,20 @@ float widened_roughness(float roughness, vec3 normal, float map_length) {
   return sqrt(sqrt(clamp(alpha * alpha + widening, 0.0, 1.0)));
 }
 
+// What the G-buffer's water_mask holds: the depth of a hollow, of the material's deepest, and the kind of material.
+// relief: 0 to 1, the surface texture's red. Of what a material has not, the weights are 0.
+vec2 material_water_mask(float relief) {
+  float hollow = material.water.x * vertex_uv.z - material.relief.x * (relief - material.relief.y);
+#if (MATERIAL_VARIANT & 16) != 0
+  hollow += material.water.y * vertex_colour.r;
+  if (material.water.w > 0.0) hollow += texture(hollow_texture, placed_uv(MATERIAL_HOLLOW)).r;
+#endif
+  return vec2(clamp(hollow, 0.0, 1.0), material.water.z);
+}
+
 // At the fragment. Derivatives are taken here: call it in uniform control flow, before any discard.
-Surface material_surface(vec4 colour) {
+// water_mask: as material_water_mask.
+Surface material_surface(vec4 colour, out vec2 water_mask) {
   Surface s;
   vec3 normal = unit_or_up(vertex_normal);
   // glTF: the back of a double-sided surface is lit with the normal turned round. A back that a single-sided
@@ -82,6 +98,7 @@ Surface material_surface(vec4 colour) {
 #if MATERIAL_HAS(2)
   orm = texture(surface_texture, placed_uv(MATERIAL_SURFACE));
 #endif
+  water_mask = material_water_mask(orm.r);
   s.metallic = clamp(material.surface.x * orm.b, 0.0, 1.0);
   s.roughness = clamp(material.surface.y * orm.g, 0.04, 1.0);
   s.roughness = widened_roughness(s.roughness, normal, map_length);
