@@ -8,6 +8,7 @@ namespace {
 using std::string_view;
 constexpr std::array<string_view, 2> drop_sizes{"marshall_palmer", "gamma"};
 constexpr std::array<string_view, 5> cone_textures{"automatic", "drizzle", "rain", "snow_fine", "snow_coarse"};
+constexpr std::array<string_view, 2> puddle_shapes{"bowl", "tub"};
 constexpr std::array<string_view, 3> light_kinds{"point", "spot", "directional"};
 constexpr Range any{};
 constexpr Range positive{0.0, 1e9};
@@ -125,17 +126,60 @@ std::vector<Schema> make_schemas() {
           "drip_source", "An edge that water drips from, along its +x.",
           {field<&DripSource::length_m>("length_m", "m", {0.01, 1000}, "Length of the edge."),
            field<&DripSource::catchment_depth_m>("catchment_depth_m", "m", {0, 100}, "Depth of the surface behind it."),
-           field<&DripSource::lip_radius_mm>("lip_radius_mm", "mm", {0.1, 10}, "Radius of the lip drops hang from.")}),
+           field<&DripSource::lip_radius_mm>("lip_radius_mm", "mm", {0.1, 10}, "Radius of the lip drops hang from."),
+           field<&DripSource::edge_share>("edge_share", "", {0, 1},
+                                          "Of the catchment's water that comes over the edge; the rest is piped away."),
+           field<&DripSource::runoff_s>("runoff_s", "s", {0, 3600}, "Time constant of the water on the catchment."),
+           field<&DripSource::site_spacing_mm>("site_spacing_mm", "mm", {2, 10000}, "From one hanging drop to the next."),
+           field<&DripSource::jitter>("jitter", "", {0, 0.9}, "Of the time between drops, either way."),
+           field<&DripSource::wind>("wind", "", {0, 10}, "Multiplies the wind on its drops."),
+           field<&DripSource::elongation>("elongation", "", {0, 10}, "Of billboards: multiplies their stretch by motion."),
+           field<&DripSource::opacity>("opacity", "", {0, 1}, "Of billboards: alpha of section 3.2."),
+           field<&DripSource::edge_strength>("edge_strength", "", {0, 10}, "Of billboards: e_s of section 3.2."),
+           field<&DripSource::edge_bias>("edge_bias", "", {0, 10}, "Of billboards: e_b of section 3.2."),
+           field<&DripSource::published>("published", "", any,
+                                         "Billboards: opacity by distance and lightning as printed.")}),
       schema<Puddle>(
-          "puddle", "A hollow where water stands: a rectangle in x and z.",
+          "puddle", "A hollow where water stands: a rectangle in x and z at its brim.",
           {field<&Puddle::size_m>("size_m", "m", {0.01, 1000}, "Extent."),
            field<&Puddle::maximum_depth_mm>("maximum_depth_mm", "mm", {0, 1000}, "Depth at which it overflows."),
-           field<&Puddle::catchment_ratio>("catchment_ratio", "", {0, 1000}, "Catchment area over puddle area.")}),
+           field<&Puddle::area_share>("area_share", "", {0.01, 1}, "Wet area when full, of the rectangle."),
+           field<&Puddle::catchment_ratio>("catchment_ratio", "", {0, 1000}, "Catchment area over puddle area."),
+           field<&Puddle::shape>("shape", "", any, "How its wet area grows with the depth.", puddle_shapes),
+           field<&Puddle::by_height>("by_height", "", any, "Depth by the ground's height, not by a material's mask."),
+           field<&Puddle::drain_mm_per_hour>("drain_mm_per_hour", "mm/h", {0, 100000}, "Lost through the bottom."),
+           field<&Puddle::evaporation_mm_per_hour>("evaporation_mm_per_hour", "mm/h", {0, 1000},
+                                                   "Lost to the air while no rain falls."),
+           field<&Puddle::initial_fill>("initial_fill", "", {-1, 1},
+                                        "Depth at the start, of the greatest; -1: after history_min of the first rain."),
+           field<&Puddle::history_min>("history_min", "min", {0, 10000}, "How long it has rained before the start."),
+           field<&Puddle::time_scale>("time_scale", "", {0, 10000}, "How fast it fills and dries; 1 is true."),
+           field<&Puddle::ripple_influence>("ripple_influence", "", {0, 1}, "p_i: of ripples against the ground."),
+           field<&Puddle::ripple_scale>("ripple_scale", "", {0.01, 100}, "s_o: size of its ripples; 1 is true."),
+           field<&Puddle::ripple_turn_deg>("ripple_turn_deg", "deg", {-36000, 36000},
+                                           "theta_o: turns the look-up of its ripples.")}),
+      schema<WetGround>(
+          "wet_ground", "How surfaces take up water and dry; every emitter has it.",
+          {field<&WetGround::initial_wetness>("initial_wetness", "", {-1, 1},
+                                              "0 dry, 1 as after long rain; -1: wet where it rains at the start."),
+           field<&WetGround::drying_speed>("drying_speed", "", {0.01, 10000},
+                                           "Without rain, water runs off and dries so many times faster; 1 is true."),
+           field<&WetGround::humidity>("humidity", "", {0, 1}, "Relative, once the rain has stopped."),
+           field<&WetGround::temperature_c>("temperature_c", "C", {0.1, 50}, "Of air and ground."),
+           field<&WetGround::published>("published", "", any, "Of wetness=everywhere: Lagarde's factors as printed.")}),
       schema<GlassPane>(
           "glass_pane", "Glass that droplets sit on: a rectangle in x and y.",
           {field<&GlassPane::size_m>("size_m", "m", {0.01, 1000}, "Extent."),
            field<&GlassPane::advancing_angle_deg>("advancing_angle_deg", "deg", {1, 179}, "Advancing contact angle."),
            field<&GlassPane::receding_angle_deg>("receding_angle_deg", "deg", {1, 179}, "Receding contact angle.")}),
+      schema<RainCatcher>(
+          "rain_catcher", "Rain splatters and mists on this and on what is below it.",
+          {field<&RainCatcher::splatter>("splatter", "", {0, 100}, "Multiplies the rings' opacity; 1 is true."),
+           field<&RainCatcher::shells>("shells", "", {1, 16}, "Layers that a splash is cut into."),
+           field<&RainCatcher::shell_height_mm>("shell_height_mm", "mm", {0.5, 100}, "Height of the highest layer."),
+           field<&RainCatcher::halo>("halo", "", {0, 1000}, "Multiplies the density of the mist; 1 is true."),
+           field<&RainCatcher::halo_height>("halo_height", "", {0.1, 20}, "Multiplies its height; 1 is true."),
+           field<&RainCatcher::published>("published", "", any, "As printed, with what is known to break.")}),
       schema<LightningDirector>(
           "lightning_director", "Directs strokes of lightning.",
           {field<&LightningDirector::flashes_per_minute>("flashes_per_minute", "1/min", {0, 60}, "Mean rate."),

@@ -84,7 +84,8 @@ std::uint8_t to_byte(float value) {
   return static_cast<std::uint8_t>(std::clamp(value, 0.0f, 1.0f) * 255.0f + 0.5f);
 }
 
-Maps paint_maps(int width, int height, glm::vec2 metres, const std::function<Texel(float, float)>& texel) {
+Maps paint_maps(int width, int height, glm::vec2 metres, float relief_m,
+                const std::function<Texel(float, float)>& texel) {
   Maps maps{Picture(width, height), Picture(width, height), Picture(width, height)};
   std::vector<float> heights(static_cast<std::size_t>(width) * height);
   for (int y = 0; y < height; ++y) {
@@ -94,7 +95,7 @@ Maps paint_maps(int width, int height, glm::vec2 metres, const std::function<Tex
       std::uint8_t* colour = maps.base_colour.at(x, y);
       for (int c = 0; c < 3; ++c) colour[c] = to_byte(to_srgb(t.albedo[c]));
       std::uint8_t* material = maps.roughness_metalness.at(x, y);
-      material[0] = 255;
+      material[0] = relief_m > 0.0f ? to_byte(0.5f + t.height_m / relief_m) : 255;
       material[1] = to_byte(t.roughness);
       material[2] = to_byte(t.metalness);
       heights[static_cast<std::size_t>(y) * width + x] = t.height_m;

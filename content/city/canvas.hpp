@@ -28,12 +28,13 @@ struct Texel {
 
 struct Maps {
   Picture base_colour;          // sRGB
-  Picture roughness_metalness;  // G roughness, B metalness
+  Picture roughness_metalness;  // R relief, G roughness, B metalness
   Picture normal;
 };
 
-// Evaluates texel(u, v) over [0,1)^2, v downwards; normals by central differences with wrap-around.
-Maps paint_maps(int width, int height, glm::vec2 metres, const std::function<Texel(float u, float v)>& texel);
+// Evaluates texel(u, v) over [0,1)^2, v downwards; normals by central differences with wrap-around. relief_m: height
+// that R spans, 0.5 being height_m = 0; 0: R is 1.
+Maps paint_maps(int width, int height, glm::vec2 metres, float relief_m, const std::function<Texel(float u, float v)>& texel);
 
 // Gradient noise in [-1, 1] that repeats after period cells in x and y.
 float periodic_noise(glm::vec2 p, glm::ivec2 period, std::uint32_t seed);

@@ -34,7 +34,7 @@ void mansard_side(Builder& world, Builder& wall, glm::vec3 low0, glm::vec3 low1,
 // A breast wall along one side of a roof terrace, mitred where it meets the next.
 void parapet(Builder& b, const Style& style, float width, float y, bool mitred_first, bool mitred_last, float miter,
              bool starts_at_line) {
-  const Paint stone = plain(style.trim * 0.85f, Finish::wet_stone);
+  const Paint stone = plain(style.trim * 0.85f, Finish::stone);
   const float m0 = (starts_at_line ? mitred_first : mitred_last) ? miter : 0.0f;
   const float m1 = (starts_at_line ? mitred_last : mitred_first) ? miter : 0.0f;
   const float h = 0.95f;
@@ -53,7 +53,7 @@ void parapet(Builder& b, const Style& style, float width, float y, bool mitred_f
 void terrace(Scene& scene, Builder b, glm::vec3 where, float turn) {
   Builder hut = b.moved({0, 0, 0}, turn);
   hut.box(tiling(Mat::brick, glm::vec3(0.8f)), {-1.4f, 0, -1.3f}, {1.4f, 2.6f, 1.3f}, face_no_bottom);
-  hut.box(plain(glm::vec3(0.10f), Finish::wet_stone), {-1.6f, 2.6f, -1.5f}, {1.6f, 2.75f, 1.7f});
+  hut.box(plain(glm::vec3(0.10f), Finish::stone), {-1.6f, 2.6f, -1.5f}, {1.6f, 2.75f, 1.7f});
   for (int side : {0, 1, 2, 3}) {
     Builder face = hut.moved({0, 0, 0}, 1.5707963f * static_cast<float>(side));
     const float z = (side & 1) ? 1.4f : 1.3f;
@@ -135,7 +135,7 @@ void add_corner(Scene& scene, const std::string& name, int sx, int sz, Style sty
   std::vector<glm::vec3> cap{high[0], high[1], high[2], high[3], at(cx + corner_facade_m, cz + corner_facade_m)};
   cap[4].y = eaves + rise;
   if (flip) std::reverse(cap.begin(), cap.end());
-  world.fan(plain(glm::vec3(0.07f), Finish::wet_stone), cap);
+  world.fan(plain(glm::vec3(0.07f), Finish::stone), cap);
   if (style.roof == Roof::flat)
     terrace(scene, world.moved(at(cx + 5.5f, cz + 5.5f) + glm::vec3(0, eaves, 0)),
             at(cx + 5.5f, cz + 5.5f) + glm::vec3(0, eaves, 0), flip ? 1.5707963f : 0.0f);

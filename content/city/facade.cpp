@@ -21,7 +21,7 @@ void quoins(Builder& b, const Paint& trim, float x, float inward, float y0, floa
 }
 
 void cornice(Builder& b, const Style& style, const Facade& f, float y) {
-  const Paint trim = plain(style.trim, Finish::wet_stone);
+  const Paint trim = plain(style.trim, Finish::stone);
   const std::array<glm::vec2, 8> profile{{{0.0f, y - 0.62f},
                                           {0.06f, y - 0.60f},
                                           {0.07f, y - 0.36f},
@@ -42,7 +42,7 @@ void cornice(Builder& b, const Style& style, const Facade& f, float y) {
 void string_course(Builder& b, const Style& style, const Facade& f, float y, float reach) {
   const std::array<glm::vec2, 5> profile{
       {{0.0f, y - 0.12f}, {reach * 0.6f, y - 0.10f}, {reach, y - 0.03f}, {reach, y + 0.03f}, {0.0f, y + 0.07f}}};
-  b.moulding(plain(style.trim, Finish::wet_stone), profile, 0.0f, f.width_m, f.miter_left, f.miter_right);
+  b.moulding(plain(style.trim, Finish::stone), profile, 0.0f, f.width_m, f.miter_left, f.miter_right);
 }
 
 void downpipe(Builder& b, float x, float y) {
@@ -107,7 +107,7 @@ void house_ground(Builder& b, const Style& style, const Facade& f, Dice& dice) {
     }
   }
   wall_with_openings(b, style.ground_wall, f.width_m, 0.0f, top, openings);
-  const Paint trim = plain(style.trim * 0.8f, Finish::wet_stone);
+  const Paint trim = plain(style.trim * 0.8f, Finish::stone);
   float x = 0.0f;  // plinth, interrupted by the door
   const float door_x = (static_cast<float>(door_bay) + 0.5f) * pitch;
   for (float end : {door_x - 0.5f * door_width - 0.15f, f.width_m}) {
@@ -152,7 +152,7 @@ void door(Builder& parent, const Style& style, glm::vec3 colour, float x, float 
   const float d = 0.35f;
   const float l = -0.5f * w;
   const float r = 0.5f * w;
-  const Paint trim = plain(style.trim, Finish::wet_stone);
+  const Paint trim = plain(style.trim, Finish::stone);
   const Paint leaf = plain(colour, Finish::gloss);
   b.quad(trim, {l, 0, 0}, {l, 0, -d}, {l, h, -d}, {l, h, 0});
   b.quad(trim, {r, 0, -d}, {r, 0, 0}, {r, h, 0}, {r, h, -d});
@@ -198,7 +198,7 @@ void facade(Builder& b, const Style& style, const Facade& f, Dice& dice) {
   b.quad(style.wall, {0, upper, 0}, {f.width_m, upper, 0}, {f.width_m, eaves, 0}, {0, eaves, 0});
   string_course(b, style, f, style.ground_height_m, 0.2f);
   cornice(b, style, f, eaves);
-  const Paint trim = plain(style.trim * 0.95f, Finish::wet_stone);
+  const Paint trim = plain(style.trim * 0.95f, Finish::stone);
   if (style.quoins) {
     const float from = style.ground_height_m + 0.1f;
     quoins(b, trim, 0.0f, 1.0f, from, upper);

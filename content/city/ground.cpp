@@ -23,7 +23,7 @@ Vertex ground_vertex(const StandingWater& water, glm::vec2 p, glm::vec2 uv, glm:
   v.normal = glm::normalize(glm::vec3(-dx, 2.0f * e, -dz));
   v.uv = uv;
   v.colour = glm::min(tint, glm::vec3(1.0f));
-  v.puddle_depth_m = std::max(0.0f, water.depth_at(p.x, p.y));
+  v.puddle_depth_m = water.depth_at(p.x, p.y);
   return v;
 }
 
@@ -57,7 +57,8 @@ glm::vec3 street_tint(float x, float z) {
 }
 
 void add_main_street(Scene& scene, const StandingWater& water, int parent) {
-  const std::vector<float> half{0.0f, 0.45f, 0.75f, 1.05f, 1.5f, 1.95f, 2.25f, 2.55f, 3.1f, 3.7f, 4.3f, 4.7f, 5.0f};
+  const std::vector<float> half{0.0f, 0.25f, 0.5f, 0.75f, 1.0f, 1.25f, 1.5f, 1.75f, 2.0f, 2.25f,
+                                2.5f, 2.8f,  3.1f, 3.4f,  3.7f, 4.0f,  4.3f, 4.65f, 5.0f};
   for (int chunk = 0; chunk < 8; ++chunk) {
     const float z0 = -street_end_m + 15.0f * static_cast<float>(chunk);
     Mesh mesh;
@@ -66,7 +67,7 @@ void add_main_street(Scene& scene, const StandingWater& water, int parent) {
       std::vector<float> xs;
       for (float x : half) xs.push_back(static_cast<float>(side) * x);
       std::sort(xs.begin(), xs.end());
-      grid(mesh.primitives[Mat::asphalt], xs, steps(z0, z0 + 15.0f, 0.83f), [&](float x, float z) {
+      grid(mesh.primitives[Mat::asphalt], xs, steps(z0, z0 + 15.0f, 0.4f), [&](float x, float z) {
         // Each lane turned by half a turn: u runs from the crown to the kerb on both sides.
         const glm::vec2 uv(std::abs(x) / 5.0f, (side > 0 ? z : -z + 3.7f) / 10.0f);
         return ground_vertex(water, {x, z}, uv, street_tint(x, z));
@@ -78,7 +79,7 @@ void add_main_street(Scene& scene, const StandingWater& water, int parent) {
 
 void add_lane(Scene& scene, const StandingWater& water, int parent) {
   std::vector<float> zs;
-  for (float z : {0.0f, 0.5f, 0.9f, 1.3f, 1.9f, 2.4f, 2.9f, 3.5f, 4.0f}) {
+  for (float z : {0.0f, 0.3f, 0.6f, 0.9f, 1.2f, 1.5f, 1.8f, 2.1f, 2.4f, 2.7f, 3.0f, 3.35f, 3.7f, 4.0f}) {
     zs.push_back(z);
     if (z > 0.0f) zs.push_back(-z);
   }
@@ -89,7 +90,7 @@ void add_lane(Scene& scene, const StandingWater& water, int parent) {
       const float x0 = side > 0 ? near : -near - 13.75f;
       Mesh mesh;
       mesh.name = std::string("weathercock_lane_") + (side > 0 ? "east_" : "west_") + std::to_string(chunk);
-      grid(mesh.primitives[Mat::setts], steps(x0, x0 + 13.75f, 0.8f), zs, [&](float x, float z) {
+      grid(mesh.primitives[Mat::setts], steps(x0, x0 + 13.75f, 0.4f), zs, [&](float x, float z) {
         return ground_vertex(water, {x, z}, glm::vec2(z, x) / 3.0f, street_tint(x, z));
       });
       if (chunk == 0) {  // the corners between the rounded kerbs, under the pavement's edge
@@ -160,7 +161,7 @@ void add_pavement(Scene& scene, int sx, int sz, int parent) {
       else
         b.quad(paint, a, c, d, e);
     };
-    const Paint stone = plain(kerb_stone, Finish::wet_stone);
+    const Paint stone = plain(kerb_stone, Finish::stone);
     const Paint slabs = tiling(Mat::slabs, glm::vec3(0.95f));
     for (std::size_t k = 0; k + 1 < piece.size(); ++k) {
       const Station& s = piece[k];
@@ -273,60 +274,9 @@ void add_ironwork(Scene& scene, const StandingWater& water, int parent) {
   }
 }
 
-// Level sheets at each basin's height: the ground itself cuts their shore. Runs of cells make one strip.
-void add_water(Scene& scene, const StandingWater& water, int parent) {
-  const int n = water.size;
-  const auto at = [n](int i, int j) {
-    return static_cast<std::size_t>(j) * static_cast<std::size_t>(n) + static_cast<std::size_t>(i);
-  };
-  // The level a cell shows: its own, or a wet neighbour's where the ground hides the sheet's rim.
-  const auto sheet = [&](int i, int j) {
-    const float ground = water.ground_m[at(i, j)];
-    if (!std::isfinite(ground)) return -1.0f;
-    if (water.level_m[at(i, j)] - ground > 0.003f) return water.level_m[at(i, j)];
-    float level = -1.0f;
-    for (int b = -1; b <= 1; ++b) {
-      for (int a = -1; a <= 1; ++a) {
-        if (i + a < 0 || j + b < 0 || i + a >= n || j + b >= n) continue;
-        const std::size_t k = at(i + a, j + b);
-        if (std::isfinite(water.ground_m[k]) && water.level_m[k] - water.ground_m[k] > 0.003f &&
-            water.level_m[k] < ground + 0.003f) {
-          level = std::max(level, water.level_m[k]);
-        }
-      }
-    }
-    return level;
-  };
-  const int tile = n / 8;
-  for (int tj = 0; tj < 8; ++tj) {
-    for (int ti = 0; ti < 8; ++ti) {
-      Mesh mesh;
-      mesh.name = "standing_water_" + std::to_string(ti) + "_" + std::to_string(tj);
-      Builder b(mesh);
-      for (int j = tj * tile; j < (tj + 1) * tile; ++j) {
-        for (int i = ti * tile; i < (ti + 1) * tile;) {
-          const float level = sheet(i, j);
-          int end = i + 1;
-          while (end < (ti + 1) * tile && level >= -0.5f && sheet(end, j) == level) ++end;
-          if (level >= -0.5f) {
-            const float x0 = -street_end_m + static_cast<float>(i) * water_cell_m;
-            const float x1 = -street_end_m + static_cast<float>(end) * water_cell_m;
-            const float z0 = -street_end_m + static_cast<float>(j) * water_cell_m;
-            const float z1 = z0 + water_cell_m;
-            b.quad({Mat::water, glm::vec3(1.0f), {}}, {x0, level, z1}, {x1, level, z1}, {x1, level, z0},
-                   {x0, level, z0});
-          }
-          i = end;
-        }
-      }
-      if (!mesh.primitives.empty()) add_mesh_node(scene, parent, std::move(mesh));
-    }
-  }
-}
-
 }  // namespace
 
-void add_ground(Scene& scene, const StandingWater& water, bool wet) {
+void add_ground(Scene& scene, const StandingWater& water) {
   const int street = scene.group("street");
   add_main_street(scene, water, street);
   add_lane(scene, water, street);
@@ -335,12 +285,10 @@ void add_ground(Scene& scene, const StandingWater& water, bool wet) {
   }
   add_markings(scene, street);
   add_ironwork(scene, water, street);
-  if (wet) add_water(scene, water, scene.group("standing_water"));
 
   const int puddles = scene.group("puddles");
   int number = 0;
   for (const Basin& basin : water.basins) {
-    if (number == 40 || basin.area_m2 < 0.6f) break;
     const glm::vec2 size = basin.maximum_m - basin.minimum_m;
     const glm::vec2 centre = 0.5f * (basin.maximum_m + basin.minimum_m);
     Node node;
@@ -348,8 +296,10 @@ void add_ground(Scene& scene, const StandingWater& water, bool wet) {
     node.parent = puddles;
     node.translation_m = {centre.x, basin.level_m, centre.y};
     nlohmann::json extras;
-    extras["puddle"] = {
-        {"size_m", {size.x, size.y}}, {"maximum_depth_mm", 1000.0f * basin.maximum_depth_m}, {"catchment_ratio", 3.0}};
+    extras["puddle"] = {{"size_m", {size.x, size.y}},
+                        {"maximum_depth_mm", 1000.0f * basin.maximum_depth_m},
+                        {"area_share", basin.area_m2 / (size.x * size.y)},
+                        {"catchment_ratio", basin.catchment_m2 / basin.area_m2}};
     node.extras_json = extras.dump();
     scene.add(std::move(node));
   }

@@ -17,8 +17,8 @@ constexpr float glow_strength_cd_m2 = 3000.0f;
 
 const char* mat_name(Mat mat) {
   static const std::array<const char*, static_cast<std::size_t>(Mat::count)> names{
-      "plain", "glow",          "stucco",   "brick",        "ashlar",    "roof_tiles", "asphalt",        "setts",
-      "slabs", "road_markings", "ironwork", "window_panes", "shopfront", "signs",      "standing_water", "glass"};
+      "plain", "glow",          "stucco",   "brick",        "ashlar",    "roof_tiles", "asphalt", "setts",
+      "slabs", "road_markings", "ironwork", "window_panes", "shopfront", "signs",      "glass"};
   return names[static_cast<std::size_t>(mat)];
 }
 
@@ -68,6 +68,21 @@ struct Maker {
     return m;
   }
 
+  // Ground where water may stand (systems/wet_materials.hpp): the vertices say how deep, the relief how far stones
+  // rise out of it.
+  json hollowed(const char* name, const Maps& maps, Mat mat) {
+    json m = tiled(name, maps);
+    const Picture& relief = maps.roughness_metalness;
+    double sum = 0.0;
+    for (std::size_t i = 0; i < relief.rgb.size(); i += 3) sum += relief.rgb[i];
+    m["extras"]["water"] = {{"hollow", "texcoord_1"},
+                            {"maximum_depth_mm", 1000.0f * puddle_depth_unit_m},
+                            {"relief_mm", 1000.0f * texture_relief_m(mat)},
+                            {"relief_mean", sum * 3.0 / static_cast<double>(relief.rgb.size()) / 255.0},
+                            {"tint", {0.72, 0.68, 0.58}}};
+    return m;
+  }
+
   json lit(const char* name, const Atlas& atlas, float strength, float roughness) {
     json m;
     m["pbrMetallicRoughness"] = {{"metallicFactor", 0.0}, {"roughnessFactor", roughness}};
@@ -84,7 +99,7 @@ struct Maker {
   }
 };
 
-json make(Maker& maker, Mat mat, bool wet) {
+json make(Maker& maker, Mat mat) {
   json m;
   switch (mat) {
     case Mat::plain:
@@ -97,23 +112,23 @@ json make(Maker& maker, Mat mat, bool wet) {
       Maker::emit(m, glow_strength_cd_m2);
       return m;
     case Mat::stucco:
-      return maker.tiled("stucco", stucco_maps(wet));
+      return maker.tiled("stucco", stucco_maps());
     case Mat::brick:
-      return maker.tiled("brick", brick_maps(wet));
+      return maker.tiled("brick", brick_maps());
     case Mat::ashlar:
-      return maker.tiled("ashlar", ashlar_maps(wet));
+      return maker.tiled("ashlar", ashlar_maps());
     case Mat::tiles:
-      return maker.tiled("roof_tiles", tile_maps(wet));
+      return maker.tiled("roof_tiles", tile_maps());
     case Mat::asphalt:
-      return maker.tiled("asphalt", asphalt_maps(wet));
+      return maker.hollowed("asphalt", asphalt_maps(), Mat::asphalt);
     case Mat::setts:
-      return maker.tiled("setts", setts_maps(wet));
+      return maker.hollowed("setts", setts_maps(), Mat::setts);
     case Mat::slabs:
-      return maker.tiled("slabs", slabs_maps(wet));
+      return maker.tiled("slabs", slabs_maps());
     case Mat::ironwork:
-      return maker.tiled("ironwork", ironwork_maps(wet));
+      return maker.tiled("ironwork", ironwork_maps());
     case Mat::markings:
-      m = maker.tiled("markings", marking_maps(wet));
+      m = maker.tiled("markings", marking_maps());
       m.erase("normalTexture");
       maker.set.images.pop_back();
       return m;
@@ -123,12 +138,6 @@ json make(Maker& maker, Mat mat, bool wet) {
       return maker.lit("shopfront", shopfront_atlas(), shopfront_strength_cd_m2, 0.05f);
     case Mat::signs:
       return maker.lit("signs", sign_atlas(), sign_strength_cd_m2, 0.25f);
-    case Mat::water:
-      // Clear water over dark ground: next to nothing comes back but the reflection (F0 = 0.02 against 0.04).
-      m["pbrMetallicRoughness"] = {
-          {"baseColorFactor", {0.016, 0.016, 0.017, 1.0}}, {"metallicFactor", 0.0}, {"roughnessFactor", 0.045}};
-      m["extras"]["standing_water"] = true;
-      return m;
     case Mat::glass:
       m["pbrMetallicRoughness"] = {
           {"baseColorFactor", {0.02, 0.025, 0.025, 0.10}}, {"metallicFactor", 0.0}, {"roughnessFactor", 0.03}};
@@ -143,7 +152,7 @@ json make(Maker& maker, Mat mat, bool wet) {
 
 }  // namespace
 
-MaterialSet make_materials(const Scene& scene, bool wet, bool textures) {
+MaterialSet make_materials(const Scene& scene, bool textures) {
   std::set<Mat> used;
   for (const Mesh& mesh : scene.meshes) {
     for (const auto& [mat, primitive] : mesh.primitives) used.insert(mat);
@@ -151,7 +160,7 @@ MaterialSet make_materials(const Scene& scene, bool wet, bool textures) {
   Maker maker;
   maker.set.index_of.assign(static_cast<std::size_t>(Mat::count), -1);
   for (Mat mat : used) {
-    json m = textures ? make(maker, mat, wet) : json::object();
+    json m = textures ? make(maker, mat) : json::object();
     m["name"] = mat_name(mat);
     maker.set.index_of[static_cast<std::size_t>(mat)] = static_cast<int>(maker.set.json.size());
     maker.set.json.push_back(m.dump());

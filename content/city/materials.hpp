@@ -23,6 +23,6 @@ struct MaterialSet {
   std::vector<int> index_of;  // per Mat, -1 where the scene does not use it
 };
 
-MaterialSet make_materials(const Scene&, bool wet, bool textures);
+MaterialSet make_materials(const Scene&, bool textures);
 
 }  // namespace petrichor::city

@@ -73,15 +73,16 @@ void mark_pane(Scene& scene, int parent, const glm::mat4& frame, glm::vec2 size_
   add_mark(scene, "glass_pane", parent, frame, {{"size_m", {size_m.x, size_m.y}}});
 }
 
-Scene make_city(const CityOptions& options) {
+Scene make_city() {
   Scene scene;
   const StandingWater water = flood_streets();
-  add_ground(scene, water, options.wet);
+  add_ground(scene, water);
   add_buildings(scene);
   add_toy_shop(scene);
   add_furniture(scene);
   add_vehicles(scene);
   add_marks(scene);
+  mark_rain_catchers(scene);
   return scene;
 }
 

@@ -30,16 +30,15 @@ void mark_pane(Scene&, int parent, const glm::mat4& frame, glm::vec2 size_m);
 inline const glm::vec3 sodium_light{1.0f, 0.60f, 0.24f};
 inline const glm::vec3 white_light{1.0f, 0.86f, 0.68f};
 
-void add_ground(Scene&, const StandingWater&, bool wet);
+void add_ground(Scene&, const StandingWater&);
 void add_buildings(Scene&);
 void add_toy_shop(Scene&);
 void add_furniture(Scene&);
 void add_vehicles(Scene&);
 void add_marks(Scene&);
+void mark_rain_catchers(Scene&);  // catchers.cpp
 
-struct CityOptions {
-  bool wet = true;  // standing water, rain-darkened surfaces
-};
-Scene make_city(const CityOptions& = {});
+// Dry: rain wets it and fills its hollows.
+Scene make_city();
 
 }  // namespace petrichor::city

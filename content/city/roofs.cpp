@@ -32,7 +32,7 @@ void chimney(Builder& parent, glm::vec3 foot, float height, int pots) {
   Builder b = parent.moved(foot);
   const float half = 0.28f + 0.2f * static_cast<float>(pots);
   b.box(tiling(Mat::brick, glm::vec3(0.75f)), {-half, -2.0f, -0.35f}, {half, height, 0.35f}, face_no_bottom);
-  b.box(plain(glm::vec3(0.25f), Finish::wet_stone), {-half - 0.07f, height - 0.25f, -0.42f},
+  b.box(plain(glm::vec3(0.25f), Finish::stone), {-half - 0.07f, height - 0.25f, -0.42f},
         {half + 0.07f, height - 0.10f, 0.42f});
   for (int k = 0; k < pots; ++k) {
     const float x = (static_cast<float>(k) - 0.5f * static_cast<float>(pots - 1)) * 0.42f;
@@ -83,7 +83,7 @@ void saddle_roof(Builder& b, const Style& style, RoofSpan s, glm::vec3 tint, Dic
   b.triangle(wall, {w, s.eaves_m, 0}, {w, s.eaves_m, -s.depth_m}, {w, ridge - 0.05f, -half});
   b.triangle(wall, {0, s.eaves_m, -s.depth_m}, {0, s.eaves_m, 0}, {0, ridge - 0.05f, -half});
   const std::array<glm::vec3, 2> top{{{0, ridge, -half}, {w, ridge, -half}}};
-  b.tube(plain(tint * 0.12f, Finish::wet_stone), top, 0.12f, 6);
+  b.tube(plain(tint * 0.12f, Finish::stone), top, 0.12f, 6);
   gutter(b, 0.0f, w, s.eaves_m, z_eave - 0.02f);
   const float run = (ridge - s.eaves_m) / (half + z_eave);
   const int dormers = static_cast<int>(w / 4.2f);
@@ -114,7 +114,7 @@ void mansard_roof(Builder& b, const Style& style, RoofSpan s, glm::vec3 tint, Di
     if (x == 0.0f) std::swap(side[1], side[3]);
     b.fan(wall, side);
   }
-  const Paint lead = plain(glm::vec3(0.07f), Finish::wet_stone);
+  const Paint lead = plain(glm::vec3(0.07f), Finish::stone);
   const float ridge = y + rise + 1.1f;
   const float half = -0.5f * s.depth_m;
   b.quad(lead, {0, y + rise, -inset}, {w, y + rise, -inset}, {w, ridge, half}, {0, ridge, half});
@@ -132,11 +132,11 @@ void mansard_roof(Builder& b, const Style& style, RoofSpan s, glm::vec3 tint, Di
 }
 
 void flat_roof(Builder& b, const Style& style, RoofSpan s, Dice& dice) {
-  const Paint wall = plain(style.trim * 0.8f, Finish::wet_stone);
+  const Paint wall = plain(style.trim * 0.8f, Finish::stone);
   const float y = s.eaves_m;
   const float parapet = 0.95f;
   const float w = s.width_m;
-  b.quad(plain(glm::vec3(0.05f, 0.05f, 0.052f), Finish::wet_stone), {0, y, 0}, {w, y, 0}, {w, y, -s.depth_m},
+  b.quad(plain(glm::vec3(0.05f, 0.05f, 0.052f), Finish::stone), {0, y, 0}, {w, y, 0}, {w, y, -s.depth_m},
          {0, y, -s.depth_m});
   b.box(wall, {0, y, -0.30f}, {w, y + parapet, 0.0f}, face_front | face_back | face_top);
   b.box(wall, {0, y, -s.depth_m}, {w, y + parapet, -s.depth_m + 0.3f}, face_front | face_back | face_top);
@@ -150,7 +150,7 @@ void flat_roof(Builder& b, const Style& style, RoofSpan s, Dice& dice) {
   const float cz = -0.62f * s.depth_m;
   b.box(tiling(Mat::brick, glm::vec3(0.8f)), {cx - 1.4f, y, cz - 1.3f}, {cx + 1.4f, y + 2.6f, cz + 1.3f},
         face_no_bottom);
-  b.box(plain(glm::vec3(0.10f), Finish::wet_stone), {cx - 1.55f, y + 2.6f, cz - 1.45f},
+  b.box(plain(glm::vec3(0.10f), Finish::stone), {cx - 1.55f, y + 2.6f, cz - 1.45f},
         {cx + 1.55f, y + 2.75f, cz + 1.6f});
   b.box(plain({0.05f, 0.09f, 0.08f}, Finish::paint), {cx - 0.5f, y, cz + 1.3f}, {cx + 0.5f, y + 2.1f, cz + 1.35f},
         face_no_back);
@@ -178,7 +178,7 @@ void stepped_gable(Builder& b, const Style& style, RoofSpan s, glm::vec3 tint, D
   const int steps = 5;
   const float step_h = 0.95f;
   const float top_half = 0.8f;
-  const Paint coping = plain(style.trim, Finish::wet_stone);
+  const Paint coping = plain(style.trim, Finish::stone);
   float ridge = s.eaves_m;
   for (int k = 0; k < steps; ++k) {
     const float f = static_cast<float>(k) / static_cast<float>(steps);

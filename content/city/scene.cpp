@@ -48,19 +48,19 @@ glm::vec3 emission_cd_m2(Glow glow) {
 glm::vec2 roughness_metalness(Finish finish) {
   switch (finish) {
     case Finish::matte:
-      return {0.72f, 0.0f};
+      return {0.85f, 0.0f};
     case Finish::paint:
-      return {0.38f, 0.0f};
+      return {0.48f, 0.0f};
     case Finish::gloss:
       return {0.12f, 0.0f};
-    case Finish::wet_stone:
-      return {0.30f, 0.0f};
+    case Finish::stone:
+      return {0.80f, 0.0f};
     case Finish::rubber:
-      return {0.55f, 0.0f};
+      return {0.75f, 0.0f};
     case Finish::iron:
-      return {0.36f, 0.85f};
+      return {0.48f, 0.85f};
     case Finish::steel:
-      return {0.28f, 1.0f};
+      return {0.32f, 1.0f};
     case Finish::chrome:
       return {0.09f, 1.0f};
     case Finish::brass:
@@ -90,6 +90,10 @@ glm::vec2 texture_metres(Mat mat) {
     default:
       return {1.0f, 1.0f};
   }
+}
+
+float texture_relief_m(Mat mat) {
+  return mat == Mat::asphalt ? 0.020f : mat == Mat::setts ? 0.040f : 0.0f;
 }
 
 bool has_normal_map(Mat mat) {

@@ -29,12 +29,11 @@ enum class Mat : std::uint8_t {
   panes,      // windows: dark glass over an atlas of interiors
   shopfront,  // shop windows: the same with goods
   signs,      // painted and lit lettering, posters, plates
-  water,      // standing water, opaque mirror
   glass,      // the only blended material
   count
 };
 
-enum class Finish : std::uint8_t { matte, paint, gloss, wet_stone, rubber, iron, steel, chrome, brass, count };
+enum class Finish : std::uint8_t { matte, paint, gloss, stone, rubber, iron, steel, chrome, brass, count };
 enum class Glow : std::uint8_t {
   sodium,
   white,
@@ -57,21 +56,24 @@ enum class Glow : std::uint8_t {
 
 // Emission palette, in cd/m2 (white point sRGB). A lamp's glass gives luminance x area = the candela of its light.
 glm::vec3 emission_cd_m2(Glow);
-// Roughness and metalness of a finish under a thin film of rain.
+// Roughness and metalness of a finish when it is dry.
 glm::vec2 roughness_metalness(Finish);
 // How many metres one repeat of a material's textures covers, in u and v.
 glm::vec2 texture_metres(Mat);
 bool has_normal_map(Mat);
+// Height that the relief in the red of a material's roughness map spans; 0: there is none.
+float texture_relief_m(Mat);
+
+inline constexpr float puddle_depth_unit_m = 0.04f;
+inline constexpr float no_puddle_m = -puddle_depth_unit_m;  // higher than any relief: the shore lies where it is 0
 
 struct Vertex {
   glm::vec3 position_m;
   glm::vec3 normal;
   glm::vec2 uv;
   glm::vec3 colour;          // linear, multiplies the base colour
-  float puddle_depth_m = 0;  // TEXCOORD_1.x = depth / puddle_depth_unit_m on street materials
+  float puddle_depth_m = no_puddle_m;  // below the brim of its hollow; TEXCOORD_1.x is that / puddle_depth_unit_m
 };
-
-inline constexpr float puddle_depth_unit_m = 0.03f;
 
 struct Primitive {
   std::vector<Vertex> vertices;

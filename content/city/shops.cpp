@@ -9,7 +9,7 @@ namespace petrichor::city {
 
 void shop_front(Builder& b, const Style& style, const Facade& f, float x0, float x1, Dice& dice) {
   const float top = style.ground_height_m;
-  const Paint stone = plain(style.trim * 0.85f, Finish::wet_stone);
+  const Paint stone = plain(style.trim * 0.85f, Finish::stone);
   const Paint joinery = plain(f.accent, Finish::gloss);
   const float pier = 0.45f;
   const float l = x0 + pier;

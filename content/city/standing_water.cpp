@@ -8,6 +8,7 @@
 
 #include "content/city/dice.hpp"
 #include "content/city/plan.hpp"
+#include "content/city/scene.hpp"
 
 namespace petrichor::city {
 namespace {
@@ -119,13 +120,16 @@ StandingWater flood_streets() {
     for (float x : {-46.0f, -22.0f, 22.0f, 46.0f}) w.gullies.emplace_back(x, s * (lane_half_m - 0.3f));
   }
 
+  // Priority-Flood (Barnes, Lehman, Mulla 2014, algorithm 1). `downhill`: where a cell's water goes.
   using Entry = std::pair<float, std::size_t>;
   std::priority_queue<Entry, std::vector<Entry>, std::greater<>> open;
   std::vector<char> closed(w.ground_m.size(), 0);
+  std::vector<std::size_t> downhill(w.ground_m.size()), order;
   const auto outlet = [&](int i, int j) {
     const std::size_t k = at(i, j);
     if (closed[k] || w.ground_m[k] == nowhere) return;
     closed[k] = 1;
+    downhill[k] = k;
     open.emplace(w.ground_m[k], k);
   };
   for (const glm::vec2& g : w.gullies) {
@@ -138,61 +142,95 @@ StandingWater flood_streets() {
     outlet(0, k);
     outlet(n - 1, k);
   }
-  const std::array<glm::ivec2, 8> around{{{1, 0}, {-1, 0}, {0, 1}, {0, -1}, {1, 1}, {1, -1}, {-1, 1}, {-1, -1}}};
-  const auto inside = [n](int i, int j) { return i >= 0 && j >= 0 && i < n && j < n; };
+  const auto each_neighbour = [&](std::size_t k, auto&& visit) {
+    const int i = static_cast<int>(k % static_cast<std::size_t>(n));
+    const int j = static_cast<int>(k / static_cast<std::size_t>(n));
+    for (int b = std::max(j - 1, 0); b <= std::min(j + 1, n - 1); ++b) {
+      for (int a = std::max(i - 1, 0); a <= std::min(i + 1, n - 1); ++a) {
+        if ((a != i || b != j) && w.ground_m[at(a, b)] != nowhere) visit(at(a, b));
+      }
+    }
+  };
   while (!open.empty()) {
     const auto [level, k] = open.top();
     open.pop();
-    const int i = static_cast<int>(k % static_cast<std::size_t>(n));
-    const int j = static_cast<int>(k / static_cast<std::size_t>(n));
-    for (const glm::ivec2& d : around) {
-      if (!inside(i + d.x, j + d.y)) continue;
-      const std::size_t m = at(i + d.x, j + d.y);
-      if (closed[m] || w.ground_m[m] == nowhere) continue;
+    order.push_back(k);
+    each_neighbour(k, [&, level = level, k = k](std::size_t m) {
+      if (closed[m]) return;
       closed[m] = 1;
+      downhill[m] = k;
       w.level_m[m] = std::max(w.ground_m[m], level);
       open.emplace(w.level_m[m], m);
-    }
+    });
   }
 
-  // Basins: connected cells that stand at least 3 mm under water.
-  std::vector<char> seen(w.ground_m.size(), 0);
-  const auto stands = [&](std::size_t k) { return w.ground_m[k] != nowhere && w.level_m[k] - w.ground_m[k] > 0.003f; };
-  for (std::size_t start = 0; start < seen.size(); ++start) {
-    if (seen[start] || !stands(start)) continue;
-    Basin basin;
+  // Basins: connected cells that lie below one brim.
+  constexpr int none = -1;
+  std::vector<int> basin_of(w.ground_m.size(), none);
+  const auto holds = [&](std::size_t k) { return w.ground_m[k] != nowhere && w.level_m[k] - w.ground_m[k] > 1e-3f; };
+  const float cell_m2 = water_cell_m * water_cell_m;
+  std::vector<Basin> basins;
+  for (std::size_t start = 0; start < basin_of.size(); ++start) {
+    if (basin_of[start] != none || !holds(start)) continue;
+    const int number = static_cast<int>(basins.size());
+    Basin basin{glm::vec2(1e9f), glm::vec2(-1e9f)};
     basin.level_m = w.level_m[start];
     std::vector<std::size_t> stack{start};
-    std::vector<std::size_t> cells;
-    seen[start] = 1;
+    basin_of[start] = number;
     while (!stack.empty()) {
       const std::size_t k = stack.back();
       stack.pop_back();
-      const int i = static_cast<int>(k % static_cast<std::size_t>(n));
-      const int j = static_cast<int>(k / static_cast<std::size_t>(n));
-      cells.push_back(k);
-      basin.maximum_depth_m = std::max(basin.maximum_depth_m, w.level_m[k] - w.ground_m[k]);
-      for (const glm::ivec2& d : around) {
-        if (!inside(i + d.x, j + d.y)) continue;
-        const std::size_t m = at(i + d.x, j + d.y);
-        if (seen[m] || !stands(m) || std::abs(w.level_m[m] - basin.level_m) > 1e-4f) continue;
-        seen[m] = 1;
-        stack.push_back(m);
-      }
-    }
-    // Some of it has soaked away: the sheet lies below the spill.
-    const float lowered = 0.35f * basin.maximum_depth_m;
-    basin = {glm::vec2(1e9f), glm::vec2(-1e9f), basin.maximum_depth_m - lowered, 0.0f, basin.level_m - lowered};
-    for (std::size_t k : cells) {
-      w.level_m[k] = std::max(w.ground_m[k], basin.level_m);
-      if (!stands(k)) continue;
+      const float depth = w.level_m[k] - w.ground_m[k];
+      basin.maximum_depth_m = std::max(basin.maximum_depth_m, depth);
+      basin.volume_m3 += cell_m2 * depth;
+      basin.area_m2 += cell_m2;
       const glm::vec2 c(centre(static_cast<int>(k % static_cast<std::size_t>(n))),
                         centre(static_cast<int>(k / static_cast<std::size_t>(n))));
-      basin.minimum_m = glm::min(basin.minimum_m, c - 0.5f * water_cell_m);
-      basin.maximum_m = glm::max(basin.maximum_m, c + 0.5f * water_cell_m);
-      basin.area_m2 += water_cell_m * water_cell_m;
+      basin.minimum_m = glm::min(basin.minimum_m, c - water_cell_m);
+      basin.maximum_m = glm::max(basin.maximum_m, c + water_cell_m);
+      each_neighbour(k, [&](std::size_t m) {
+        if (basin_of[m] != none || !holds(m) || std::abs(w.level_m[m] - basin.level_m) > 1e-4f) return;
+        basin_of[m] = number;
+        stack.push_back(m);
+      });
     }
-    if (basin.area_m2 > 0.3f) w.basins.push_back(basin);
+    basins.push_back(basin);
+  }
+  // What falls on a cell runs downhill into the first basin on its way: cells in reverse order of the flood.
+  std::vector<float> runoff_m2(w.ground_m.size(), cell_m2);
+  for (auto k = order.rbegin(); k != order.rend(); ++k) {
+    if (basin_of[*k] != none)
+      basins[static_cast<std::size_t>(basin_of[*k])].catchment_m2 += runoff_m2[*k];
+    else if (downhill[*k] != *k)
+      runoff_m2[downhill[*k]] += runoff_m2[*k];
+  }
+
+  // How far each place lies below its brim. Round about a basin the same level goes on, under the ground, so that the
+  // shore is where the two meet; where the ground falls again beyond the sill it counts as dry.
+  w.depth_m.assign(w.ground_m.size(), no_puddle_m);
+  std::vector<std::size_t> ring;
+  std::vector<float> brim(w.ground_m.size());
+  const auto worth_it = [](const Basin& b) { return b.area_m2 > 0.5f && b.maximum_depth_m > 0.004f; };
+  for (std::size_t k = 0; k < basin_of.size(); ++k) {
+    if (basin_of[k] == none || !worth_it(basins[static_cast<std::size_t>(basin_of[k])])) continue;
+    brim[k] = w.level_m[k];
+    w.depth_m[k] = brim[k] - w.ground_m[k];
+    ring.push_back(k);
+  }
+  for (int step = 1; step <= 4; ++step) {
+    std::vector<std::size_t> next;
+    for (std::size_t k : ring) {
+      each_neighbour(k, [&](std::size_t m) {
+        if (w.depth_m[m] != no_puddle_m) return;
+        brim[m] = brim[k];
+        w.depth_m[m] = std::max(std::min(brim[m] - w.ground_m[m], -0.001f * static_cast<float>(step)), no_puddle_m);
+        next.push_back(m);
+      });
+    }
+    ring = std::move(next);
+  }
+  for (const Basin& basin : basins) {
+    if (worth_it(basin)) w.basins.push_back(basin);
   }
   std::stable_sort(w.basins.begin(), w.basins.end(),
                    [](const Basin& a, const Basin& b) { return a.area_m2 > b.area_m2; });
@@ -204,7 +242,7 @@ float StandingWater::depth_at(float x, float z) const {
   const float fz = (z + street_end_m) / water_cell_m - 0.5f;
   const int i = static_cast<int>(std::floor(fx));
   const int j = static_cast<int>(std::floor(fz));
-  float depth = 0.0f;
+  float depth = 0.0f, all = 0.0f;
   for (int b = 0; b < 2; ++b) {
     for (int a = 0; a < 2; ++a) {
       const int ci = std::clamp(i + a, 0, size - 1);
@@ -214,10 +252,11 @@ float StandingWater::depth_at(float x, float z) const {
       if (!std::isfinite(ground_m[k])) continue;
       const float wx = a ? fx - static_cast<float>(i) : 1.0f - (fx - static_cast<float>(i));
       const float wz = b ? fz - static_cast<float>(j) : 1.0f - (fz - static_cast<float>(j));
-      depth += wx * wz * (level_m[k] - ground_m[k]);
+      depth += wx * wz * depth_m[k];
+      all += wx * wz;
     }
   }
-  return depth;
+  return all > 0.0f ? depth / all : no_puddle_m;
 }
 
 }  // namespace petrichor::city

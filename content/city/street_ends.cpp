@@ -16,7 +16,7 @@ namespace {
 // A vaulted passage through the ground floor of the gate house, in its wall frame.
 void passage(Builder& b, float width, float top, float depth) {
   const Paint stone = tiling(Mat::ashlar, glm::vec3(0.75f));
-  const Paint trim = plain(glm::vec3(0.36f, 0.33f, 0.29f), Finish::wet_stone);
+  const Paint trim = plain(glm::vec3(0.36f, 0.33f, 0.29f), Finish::stone);
   const float m = 0.5f * width;
   const float half = 2.6f;
   const float spring = 2.3f;
@@ -64,8 +64,8 @@ void passage(Builder& b, float width, float top, float depth) {
 
 void tower(Builder& b) {
   const Paint stone = tiling(Mat::ashlar, glm::vec3(0.7f));
-  const Paint trim = plain(glm::vec3(0.30f, 0.28f, 0.25f), Finish::wet_stone);
-  const Paint slate = plain(glm::vec3(0.05f, 0.065f, 0.065f), Finish::wet_stone);
+  const Paint trim = plain(glm::vec3(0.30f, 0.28f, 0.25f), Finish::stone);
+  const Paint slate = plain(glm::vec3(0.05f, 0.065f, 0.065f), Finish::stone);
   const float r = 4.6f;
   b.box(stone, {-r, 0, -r}, {r, 34.0f, r}, face_all & ~(face_top | face_bottom));
   for (float sx : {-1.0f, 1.0f}) {
@@ -134,7 +134,7 @@ void backdrop(Scene& scene, int parent) {
     const float fz = (quarter & 2) ? 1.0f : -1.0f;
     const glm::vec3 lo(std::min(fx * 17.0f, fx * 118.0f), -0.02f, std::min(fz * 15.0f, fz * 118.0f));
     const glm::vec3 hi(std::max(fx * 17.0f, fx * 118.0f), -0.02f, std::max(fz * 15.0f, fz * 118.0f));
-    b.quad(plain(glm::vec3(0.04f), Finish::wet_stone), {lo.x, lo.y, hi.z}, {hi.x, lo.y, hi.z}, {hi.x, lo.y, lo.z},
+    b.quad(plain(glm::vec3(0.04f), Finish::stone), {lo.x, lo.y, hi.z}, {hi.x, lo.y, hi.z}, {hi.x, lo.y, lo.z},
            {lo.x, lo.y, lo.z});
     for (int k = 0; k < 26; ++k) {
       const float ring = 80.0f + 9.0f * static_cast<float>(k % 4) + dice.between(0.0f, 6.0f);
@@ -192,9 +192,9 @@ void add_street_ends(Scene& scene) {
   b.quad(tiling(Mat::setts, glm::vec3(0.9f)), {-24.0f, 0.03f, 21.0f}, {20.0f, 0.03f, 21.0f}, {20.0f, 0.03f, -6.0f},
          {-24.0f, 0.03f, -6.0f});
   b.box(tiling(Mat::ashlar, glm::vec3(0.6f)), {-9.0f, 0, -34.0f}, {9.0f, 13.0f, -4.0f}, face_no_bottom);
-  b.quad(plain(glm::vec3(0.05f), Finish::wet_stone), {-9.6f, 13.0f, -4.0f}, {-9.6f, 13.0f, -34.0f}, {0, 22.0f, -34.0f},
+  b.quad(plain(glm::vec3(0.05f), Finish::stone), {-9.6f, 13.0f, -4.0f}, {-9.6f, 13.0f, -34.0f}, {0, 22.0f, -34.0f},
          {0, 22.0f, -4.0f});
-  b.quad(plain(glm::vec3(0.05f), Finish::wet_stone), {9.6f, 13.0f, -34.0f}, {9.6f, 13.0f, -4.0f}, {0, 22.0f, -4.0f},
+  b.quad(plain(glm::vec3(0.05f), Finish::stone), {9.6f, 13.0f, -34.0f}, {9.6f, 13.0f, -4.0f}, {0, 22.0f, -4.0f},
          {0, 22.0f, -34.0f});
   b.quad(plain({0.07f, 0.035f, 0.015f}, Finish::paint), {-1.3f, 0, 4.7f}, {1.3f, 0, 4.7f}, {1.3f, 4.2f, 4.7f},
          {-1.3f, 4.2f, 4.7f});

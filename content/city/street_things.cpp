@@ -71,7 +71,7 @@ Mesh planter_mesh() {
   Mesh mesh;
   mesh.name = "planter";
   Builder b(mesh);
-  const Paint stone = plain(glm::vec3(0.22f, 0.20f, 0.18f), Finish::wet_stone);
+  const Paint stone = plain(glm::vec3(0.22f, 0.20f, 0.18f), Finish::stone);
   const std::array<glm::vec2, 7> pot{
       {{0.30f, 0.50f}, {0.40f, 0.56f}, {0.42f, 0.50f}, {0.34f, 0.44f}, {0.30f, 0.14f}, {0.36f, 0.08f}, {0.36f, 0.0f}}};
   b.lathe(stone, pot, 12);

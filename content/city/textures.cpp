@@ -85,9 +85,9 @@ glm::vec2 grains(float u, float v, glm::ivec2 cells, std::uint32_t seed) {
 
 }  // namespace
 
-Maps asphalt_maps(bool wet) {
+Maps asphalt_maps() {
   const glm::vec2 metres = texture_metres(Mat::asphalt);
-  return paint_maps(1024, 2048, metres, [&](float u, float v) {
+  return paint_maps(1024, 2048, metres, texture_relief_m(Mat::asphalt), [&](float u, float v) {
     const float across = u * metres.x;  // from the middle of the road
     const glm::vec2 grain = grains(u, v, {330, 660}, 3);
     const float large = periodic_fbm(u, v, {2, 4}, 5, 11);
@@ -112,22 +112,18 @@ Maps asphalt_maps(bool wet) {
     albedo = blend(albedo, 0.05f, 0.25f * tracks);
     albedo *= (1.0f - 0.45f * oil) * (1.0f - 0.7f * crack) * (1.0f - 0.6f * longitudinal);
     albedo = blend(albedo, 0.012f, 0.85f * tar);
-    t.albedo = std::clamp(albedo, 0.008f, 0.12f) * glm::vec3(1.0f, 0.985f, 0.96f) * (wet ? 0.72f : 1.0f);
-    const float film =
-        smooth(-0.3f, 0.55f, large + 0.55f * tracks - 0.2f);  // where the water film closes over the stones
-    t.roughness = wet ? blend(0.46f, 0.20f, film) - 0.06f * oil - 0.12f * tar + 0.05f * fine
-                      : 0.86f - 0.10f * tracks - 0.2f * oil - 0.3f * tar + 0.04f * fine;
+    t.albedo = std::clamp(albedo, 0.008f, 0.12f) * glm::vec3(1.0f, 0.985f, 0.96f);
+    t.roughness = 0.86f - 0.10f * tracks - 0.2f * oil - 0.3f * tar + 0.04f * fine;
     t.roughness = std::clamp(t.roughness, 0.12f, 0.95f);
-    const float relief = wet ? blend(1.0f, 0.42f, film) : 1.0f;
-    t.height_m = relief * (0.0022f * stone * (0.4f + 0.6f * grain.y) + 0.0012f * fine) - 0.004f * crack -
-                 0.003f * longitudinal + 0.002f * tar + 0.004f * large;
+    t.height_m = (0.0022f * stone * (0.4f + 0.6f * grain.y) + 0.0012f * fine) - 0.004f * crack - 0.003f * longitudinal +
+                 0.002f * tar + 0.004f * large;
     return t;
   });
 }
 
-Maps setts_maps(bool wet) {
+Maps setts_maps() {
   const glm::vec2 metres = texture_metres(Mat::setts);
-  return paint_maps(1024, 1024, metres, [&](float u, float v) {
+  return paint_maps(1024, 1024, metres, texture_relief_m(Mat::setts), [&](float u, float v) {
     // Segmental arcs: courses bowed across the road, three arcs a repeat.
     const float arc = std::abs(std::sin(u * 3.0f * 3.14159265f));
     const float warp = periodic_fbm(u, v, {6, 6}, 2, 5) * 0.008f;
@@ -140,18 +136,17 @@ Maps setts_maps(bool wet) {
     Texel t;
     const glm::vec3 granite = blend(glm::vec3(0.115f, 0.105f, 0.10f), glm::vec3(0.10f, 0.085f, 0.075f), hue);
     t.albedo = granite * (0.55f + 0.75f * value) * (1.0f + 0.35f * fine + 0.25f * large);
-    t.albedo = blend(glm::vec3(0.035f, 0.032f, 0.026f), t.albedo, crown) * (wet ? 0.62f : 1.0f);
-    t.roughness = wet ? blend(0.24f, 0.20f + 0.16f * unit(mix(b.id, 4)) + 0.05f * fine + 0.06f * large, crown)
-                      : blend(0.95f, 0.62f + 0.2f * value, crown);
+    t.albedo = blend(glm::vec3(0.035f, 0.032f, 0.026f), t.albedo, crown);
+    t.roughness = blend(0.95f, 0.62f + 0.2f * value, crown);
     const float tilt = (b.fx - 0.5f) * (unit(mix(b.id, 5)) - 0.5f) + (b.fy - 0.5f) * (unit(mix(b.id, 6)) - 0.5f);
     t.height_m = 0.014f * crown + 0.006f * (value - 0.5f) * crown + 0.009f * tilt * crown + 0.0016f * fine;
     return t;
   });
 }
 
-Maps slabs_maps(bool wet) {
+Maps slabs_maps() {
   const glm::vec2 metres = texture_metres(Mat::slabs);
-  return paint_maps(1024, 1024, metres, [&](float u, float v) {
+  return paint_maps(1024, 1024, metres, 0.0f, [&](float u, float v) {
     const float fine = periodic_fbm(u, v, {64, 64}, 3, 17);
     const float large = periodic_fbm(u, v, {3, 3}, 5, 16);
     const Bond b = running_bond({u + 0.0006f * fine, v}, metres, 5, 8, 0.009f, 0.3f, 91, true);
@@ -162,19 +157,17 @@ Maps slabs_maps(bool wet) {
     Texel t;
     t.albedo = blend(glm::vec3(0.17f, 0.16f, 0.145f), glm::vec3(0.13f, 0.128f, 0.125f), unit(mix(b.id, 2)));
     t.albedo *= 0.72f + 0.45f * value + 0.25f * fine + 0.3f * large;
-    t.albedo = blend(glm::vec3(0.035f), t.albedo, face) * (1.0f - 0.45f * gum) * (wet ? 0.6f : 1.0f);
-    const float film = smooth(-0.25f, 0.5f, large + 0.5f * (unit(mix(b.id, 8)) - 0.5f));
-    t.roughness = wet ? blend(blend(0.42f, 0.2f, film), 0.3f, 1.0f - face) + 0.05f * fine : 0.78f + 0.1f * fine;
+    t.albedo = blend(glm::vec3(0.035f), t.albedo, face) * (1.0f - 0.45f * gum);
+    t.roughness = 0.78f + 0.1f * fine;
     const float tilt = (b.fx - 0.5f) * (unit(mix(b.id, 5)) - 0.5f) + (b.fy - 0.5f) * (unit(mix(b.id, 6)) - 0.5f);
-    t.height_m =
-        0.005f * face + 0.003f * (value - 0.5f) * face + 0.006f * tilt * face + (wet ? 0.0005f : 0.001f) * fine * face;
+    t.height_m = 0.005f * face + 0.003f * (value - 0.5f) * face + 0.006f * tilt * face + 0.001f * fine * face;
     return t;
   });
 }
 
-Maps brick_maps(bool wet) {
+Maps brick_maps() {
   const glm::vec2 metres = texture_metres(Mat::brick);
-  return paint_maps(1024, 1024, metres, [&](float u, float v) {
+  return paint_maps(1024, 1024, metres, 0.0f, [&](float u, float v) {
     const float fine = periodic_fbm(u, v, {48, 48}, 3, 27);
     const float large = periodic_fbm(u, v, {2, 2}, 4, 26);
     const Bond b = running_bond({u + 0.0008f * fine, v + 0.0006f * fine}, metres, 8, 26, 0.011f, 0.06f, 101, false);
@@ -184,32 +177,32 @@ Maps brick_maps(bool wet) {
     glm::vec3 clay = blend(glm::vec3(0.26f, 0.105f, 0.065f), glm::vec3(0.20f, 0.09f, 0.07f), unit(mix(b.id, 2)));
     if (unit(mix(b.id, 9)) > 0.9f) clay = glm::vec3(0.10f, 0.065f, 0.06f);  // burnt headers
     clay *= 0.7f + 0.55f * value + 0.3f * fine + 0.25f * large;
-    t.albedo = blend(glm::vec3(0.21f, 0.19f, 0.165f) * (1.0f + 0.3f * large), clay, face) * (wet ? 0.85f : 1.0f);
-    t.roughness = (wet ? 0.62f : 0.85f) + 0.12f * fine + 0.1f * (1.0f - face);
+    t.albedo = blend(glm::vec3(0.21f, 0.19f, 0.165f) * (1.0f + 0.3f * large), clay, face);
+    t.roughness = 0.85f + 0.12f * fine + 0.1f * (1.0f - face);
     t.height_m = 0.005f * face + 0.002f * (value - 0.5f) * face + 0.0012f * fine;
     return t;
   });
 }
 
-Maps stucco_maps(bool wet) {
+Maps stucco_maps() {
   const glm::vec2 metres = texture_metres(Mat::stucco);
-  return paint_maps(512, 512, metres, [&](float u, float v) {
+  return paint_maps(512, 512, metres, 0.0f, [&](float u, float v) {
     const float fine = periodic_fbm(u, v, {60, 60}, 2, 37);
     const float large = periodic_fbm(u, v, {2, 2}, 5, 36);
     const float streaks = periodic_fbm(u, v, {26, 2}, 3, 38);  // rain marks running down
     const float flaked = smooth(0.50f, 0.56f, periodic_fbm(u, v, {3, 3}, 5, 39));
     Texel t;
-    t.albedo = glm::vec3(0.62f) * (1.0f + 0.16f * large + 0.10f * streaks + 0.06f * fine) * (wet ? 0.85f : 1.0f);
+    t.albedo = glm::vec3(0.62f) * (1.0f + 0.16f * large + 0.10f * streaks + 0.06f * fine);
     t.albedo = blend(t.albedo, glm::vec3(0.33f, 0.30f, 0.27f), 0.6f * flaked);
-    t.roughness = (wet ? 0.55f : 0.85f) + 0.08f * fine - (wet ? 0.1f * std::max(streaks, 0.0f) : 0.0f);
+    t.roughness = 0.85f + 0.08f * fine;
     t.height_m = 0.0012f * fine + 0.004f * large - 0.002f * flaked;
     return t;
   });
 }
 
-Maps ashlar_maps(bool wet) {
+Maps ashlar_maps() {
   const glm::vec2 metres = texture_metres(Mat::ashlar);
-  return paint_maps(512, 512, metres, [&](float u, float v) {
+  return paint_maps(512, 512, metres, 0.0f, [&](float u, float v) {
     const float fine = periodic_fbm(u, v, {40, 40}, 3, 47);
     const float large = periodic_fbm(u, v, {2, 2}, 5, 46);
     const Bond b = running_bond({u, v}, metres, 3, 6, 0.02f, 0.12f, 121, false);
@@ -218,16 +211,16 @@ Maps ashlar_maps(bool wet) {
     Texel t;
     t.albedo =
         glm::vec3(0.46f, 0.43f, 0.375f) * (0.78f + 0.3f * unit(b.id) + 0.15f * fine + 0.2f * large + 0.12f * streaks);
-    t.albedo = blend(glm::vec3(0.16f, 0.145f, 0.12f), t.albedo, face) * (wet ? 0.8f : 1.0f);
-    t.roughness = (wet ? 0.52f : 0.8f) + 0.1f * fine;
+    t.albedo = blend(glm::vec3(0.16f, 0.145f, 0.12f), t.albedo, face);
+    t.roughness = 0.8f + 0.1f * fine;
     t.height_m = 0.016f * face + 0.0015f * fine;
     return t;
   });
 }
 
-Maps tile_maps(bool wet) {
+Maps tile_maps() {
   const glm::vec2 metres = texture_metres(Mat::tiles);
-  return paint_maps(512, 512, metres, [&](float u, float v) {
+  return paint_maps(512, 512, metres, 0.0f, [&](float u, float v) {
     const float fine = periodic_fbm(u, v, {40, 40}, 2, 57);
     const float large = periodic_fbm(u, v, {2, 2}, 4, 56);
     const int rows = 9;
@@ -244,28 +237,27 @@ Maps tile_maps(bool wet) {
     Texel t;
     t.albedo = blend(glm::vec3(0.17f, 0.075f, 0.05f), glm::vec3(0.09f, 0.06f, 0.05f), unit(mix(id, 2))) *
                (0.6f + 0.6f * unit(id) + 0.4f * fine + 0.35f * large);
-    t.albedo *= (0.35f + 0.65f * lip) * (0.5f + 0.5f * gap) * (wet ? 0.75f : 1.0f);
-    t.roughness = (wet ? 0.34f : 0.75f) + 0.12f * fine;
+    t.albedo *= (0.35f + 0.65f * lip) * (0.5f + 0.5f * gap);
+    t.roughness = 0.75f + 0.12f * fine;
     t.height_m = 0.018f * fy * lip + 0.004f * gap + 0.008f * std::sin(3.14159f * fx) + 0.001f * fine;
     return t;
   });
 }
 
-Maps marking_maps(bool wet) {
-  return paint_maps(512, 512, {1.0f, 1.0f}, [&](float u, float v) {
+Maps marking_maps() {
+  return paint_maps(512, 512, {1.0f, 1.0f}, 0.0f, [&](float u, float v) {
     const float fine = periodic_fbm(u, v, {60, 60}, 3, 67);
     const float wear = smooth(0.18f, 0.5f, periodic_fbm(u, v, {4, 4}, 5, 66) + 0.25f * fine);
     Texel t;
-    t.albedo = blend(glm::vec3(0.50f, 0.49f, 0.45f) * (1.0f + 0.15f * fine), glm::vec3(0.05f), 0.9f * wear) *
-               (wet ? 0.8f : 1.0f);
-    t.roughness = wet ? blend(0.22f, 0.4f, wear) : 0.6f;
+    t.albedo = blend(glm::vec3(0.50f, 0.49f, 0.45f) * (1.0f + 0.15f * fine), glm::vec3(0.05f), 0.9f * wear);
+    t.roughness = blend(0.55f, 0.8f, wear);
     t.height_m = 0.001f * fine;
     return t;
   });
 }
 
-Maps ironwork_maps(bool wet) {
-  return paint_maps(256, 256, {0.7f, 0.7f}, [&](float u, float v) {
+Maps ironwork_maps() {
+  return paint_maps(256, 256, {0.7f, 0.7f}, 0.0f, [&](float u, float v) {
     const float x = (u - 0.5f) * 2.0f;
     const float y = (v - 0.5f) * 2.0f;
     const float r = std::sqrt(x * x + y * y);
@@ -277,7 +269,7 @@ Maps ironwork_maps(bool wet) {
     const float raised = std::min(1.0f, stud + ring);
     Texel t;
     t.albedo = blend(glm::vec3(0.05f, 0.04f, 0.033f), glm::vec3(0.16f, 0.15f, 0.14f), raised) * (1.0f + 0.5f * fine);
-    t.roughness = (wet ? 0.28f : 0.5f) + 0.15f * fine - 0.05f * raised;
+    t.roughness = 0.5f + 0.15f * fine - 0.05f * raised;
     t.metalness = 0.7f;
     t.height_m = 0.006f * raised + 0.0006f * fine;
     return t;

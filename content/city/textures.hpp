@@ -1,20 +1,19 @@
 #pragma once
-// The tiling textures of the city's surfaces, under a thin film of rain: albedos halve and roughness falls
-// (shared physics, section 9). `wet` = false gives the same surfaces dry.
+// The tiling textures of the city's surfaces, dry.
 
 #include "content/city/canvas.hpp"
 #include "content/city/scene.hpp"
 
 namespace petrichor::city {
 
-Maps asphalt_maps(bool wet);  // one lane of 5 m, u from the middle of the road to the kerb, v along it
-Maps setts_maps(bool wet);
-Maps slabs_maps(bool wet);
-Maps brick_maps(bool wet);
-Maps stucco_maps(bool wet);
-Maps ashlar_maps(bool wet);
-Maps tile_maps(bool wet);
-Maps marking_maps(bool wet);
-Maps ironwork_maps(bool wet);
+Maps asphalt_maps();  // one lane of 5 m, u from the middle of the road to the kerb, v along it
+Maps setts_maps();
+Maps slabs_maps();
+Maps brick_maps();
+Maps stucco_maps();
+Maps ashlar_maps();
+Maps tile_maps();
+Maps marking_maps();
+Maps ironwork_maps();
 
 }  // namespace petrichor::city

@@ -64,7 +64,7 @@ void glazing(const Front& front, Builder& b, float x0, float x1, int panes, bool
                  {s, glass_top_m, deep});
         b.box(wood, {s - 0.03f, 0.1f, deep}, {s + 0.03f, riser_m, z}, face_sides | face_top);
       }
-      b.box(plain(glm::vec3(0.3f), Finish::wet_stone), {a, 0.0f, deep}, {c, floor_m - 0.08f, 0.25f},
+      b.box(plain(glm::vec3(0.3f), Finish::stone), {a, 0.0f, deep}, {c, floor_m - 0.08f, 0.25f},
             face_no_back & ~face_bottom);
     } else {
       b.box(wood, {a, 0.1f, -0.2f}, {c, riser_m, 0.03f}, face_front | face_top);

@@ -99,7 +99,7 @@ void window(Builder& parent, const Style& style, float x, float y, float w, floa
   const float depth = 0.17f;
   const float l = -0.5f * w;
   const float r = 0.5f * w;
-  const Paint trim = plain(style.trim, Finish::wet_stone);
+  const Paint trim = plain(style.trim, Finish::stone);
   const Paint reveal = plain(style.trim * 0.8f, Finish::matte);
   const Paint frame = plain(style.joinery, Finish::paint);
   b.quad(reveal, {l, 0, 0}, {l, 0, -depth}, {l, h, -depth}, {l, h, 0});
@@ -153,7 +153,7 @@ void balcony(Builder& parent, const Style& style, float x, float y, float width)
   Builder b = parent.moved({x, y, 0.0f});
   const float reach = 0.75f;
   const float half = 0.5f * width;
-  const Paint stone = plain(style.trim * 0.9f, Finish::wet_stone);
+  const Paint stone = plain(style.trim * 0.9f, Finish::stone);
   const Paint iron = plain(railing_iron, Finish::iron);
   const std::array<glm::vec2, 4> slab{{{0.0f, -0.20f}, {reach - 0.06f, -0.16f}, {reach, -0.08f}, {reach, 0.0f}}};
   b.moulding(stone, slab, -half, half);

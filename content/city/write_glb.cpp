@@ -101,7 +101,7 @@ json write_primitive(Writer& w, Mat mat, const Primitive& p, int material) {
     }
     colours.push_back(65535);
     coloured = coloured || v.colour != glm::vec3(1.0f);
-    puddled = puddled || v.puddle_depth_m > 0.0f;
+    puddled = puddled || v.puddle_depth_m > no_puddle_m;
   }
   json attributes;
   const int position = w.floats(positions, "VEC3");
@@ -110,7 +110,7 @@ json write_primitive(Writer& w, Mat mat, const Primitive& p, int material) {
   attributes["POSITION"] = position;
   attributes["NORMAL"] = w.floats(normals, "VEC3");
   if (has_normal_map(mat)) attributes["TANGENT"] = w.floats(tangents(p), "VEC4");
-  if (mat != Mat::water && mat != Mat::glass) attributes["TEXCOORD_0"] = w.floats(uvs, "VEC2");
+  if (mat != Mat::glass) attributes["TEXCOORD_0"] = w.floats(uvs, "VEC2");
   if (coloured && mat != Mat::glow) {
     const int view = w.view(colours.data(), colours.size() * sizeof(std::uint16_t), target_vertices);
     attributes["COLOR_0"] = w.accessor(view, component_ushort, p.vertices.size(), "VEC4");
@@ -184,7 +184,7 @@ void append_word(std::vector<std::uint8_t>& out, std::uint32_t value) {
 Result<std::vector<std::uint8_t>> glb_bytes(const Scene& scene, const WriteOptions& options) {
   Writer w;
   w.root["asset"] = {{"version", "2.0"}, {"generator", "petrichor_city"}};
-  const MaterialSet materials = make_materials(scene, options.wet, options.textures);
+  const MaterialSet materials = make_materials(scene, options.textures);
   for (const std::string& m : materials.json) w.root["materials"].push_back(json::parse(m));
   for (const EncodedImage& image : materials.images) {
     if (image.bytes.empty())

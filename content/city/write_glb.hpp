@@ -9,7 +9,6 @@
 namespace petrichor::city {
 
 struct WriteOptions {
-  bool wet = true;       // streets and walls under a film of rain
   bool textures = true;  // off only for quick looks at the geometry
 };
 

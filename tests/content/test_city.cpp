@@ -51,7 +51,7 @@ TEST(City, DrawsBetween100And300ThousandTriangles) {
 }
 
 TEST(City, SameGeometryEveryTime) {
-  const WriteOptions bare{true, false};
+  const WriteOptions bare{false};
   const auto first = glb_bytes(town(), bare);
   const auto second = glb_bytes(make_city(), bare);
   ASSERT_TRUE(first && second);
@@ -184,12 +184,17 @@ TEST(City, StreetsAreAboutOneHundredAndTwentyMetresLong) {
   EXPECT_GT(low.y, -0.15f);
 }
 
-// Water stands level, in hollows, one to three centimetres deep, and runs off where a gully takes it.
-TEST(City, WaterStandsWhereTheGroundHoldsIt) {
+// Hollows hold one to five centimetres, level at their brim, and run off where a gully takes it.
+TEST(City, HollowsHoldWaterUpToTheirBrim) {
   const StandingWater water = flood_streets();
   ASSERT_GE(water.basins.size(), 12u);
   float deepest = 0.0f;
-  for (const Basin& basin : water.basins) deepest = std::max(deepest, basin.maximum_depth_m);
+  for (const Basin& basin : water.basins) {
+    deepest = std::max(deepest, basin.maximum_depth_m);
+    EXPECT_GE(basin.catchment_m2, basin.area_m2 * 0.999f) << "rain that falls into it stays";
+    EXPECT_LT(basin.volume_m3, basin.area_m2 * basin.maximum_depth_m);
+    EXPECT_GT(basin.volume_m3, 0.1f * basin.area_m2 * basin.maximum_depth_m);
+  }
   EXPECT_GT(deepest, 0.010f);
   EXPECT_LT(deepest, 0.080f);
   double covered_m2 = 0.0;
@@ -198,12 +203,18 @@ TEST(City, WaterStandsWhereTheGroundHoldsIt) {
     if (!std::isfinite(water.ground_m[k])) continue;
     ASSERT_GE(water.level_m[k], water.ground_m[k]);
     street_m2 += water_cell_m * water_cell_m;
-    if (water.level_m[k] - water.ground_m[k] > 0.003f) covered_m2 += water_cell_m * water_cell_m;
+    if (water.level_m[k] - water.ground_m[k] > 0.001f) covered_m2 += water_cell_m * water_cell_m;
+    if (water.depth_m[k] > 0.0f) {
+      ASSERT_NEAR(water.depth_m[k], water.level_m[k] - water.ground_m[k], 1e-6f);
+    }
   }
   EXPECT_GT(covered_m2 / street_m2, 0.01);
   EXPECT_LT(covered_m2 / street_m2, 0.25);
+  double caught_m2 = 0.0;
+  for (const Basin& basin : water.basins) caught_m2 += basin.catchment_m2;
+  EXPECT_LE(caught_m2, street_m2) << "no rain runs into two basins";
   for (const glm::vec2& gully : water.gullies) EXPECT_LT(water.depth_at(gully.x, gully.y), 0.02f);
-  // No wet cell has a lower dry way out: every neighbour of standing water is at least as high as its level.
+  // Wet cells have no lower way out: every neighbour of standing water stands at least as high.
   const int n = water.size;
   for (int j = 1; j + 1 < n; ++j) {
     for (int i = 1; i + 1 < n; ++i) {
@@ -216,18 +227,52 @@ TEST(City, WaterStandsWhereTheGroundHoldsIt) {
       for (int b = -1; b <= 1; ++b) {
         for (int a = -1; a <= 1; ++a) {
           const std::size_t m = at(i + a, j + b);
-          if (std::isfinite(water.level_m[m]) && water.level_m[m] < water.level_m[k] - 1e-4f) ++lower;
+          if (!std::isfinite(water.level_m[m]) || water.level_m[m] >= water.level_m[k] - 1e-4f) continue;
+          ++lower;
         }
       }
-      // Lower water beside it is allowed only across a spill, where this cell's own ground is the sill.
       ASSERT_EQ(lower, 0) << "water at " << i << ", " << j << " stands above its neighbour";
     }
   }
 }
 
-TEST(City, DryTownHoldsNoWater) {
-  const Scene dry = make_city({false});
-  for (const Mesh& mesh : dry.meshes) EXPECT_FALSE(mesh.primitives.contains(Mat::water)) << mesh.name;
+// Two ruts in each lane lie deeper than the ground beside them, and before the crossing, where buses brake, they hold
+// water that the crown between them does not.
+TEST(City, TyreTracksFillFirst) {
+  const StandingWater water = flood_streets();
+  int ruts = 0, between = 0, all = 0;
+  for (float z = 6.0f; z < 40.0f; z += 0.25f) {
+    for (const float side : {-1.0f, 1.0f}) {
+      for (const float end : {-1.0f, 1.0f}) {
+        ruts += water.depth_at(side * 0.75f, end * z) > 0.0f;
+        ruts += water.depth_at(side * 2.25f, end * z) > 0.0f;
+        between += water.depth_at(side * 1.5f, end * z) > 0.0f;
+        between += water.depth_at(side * 0.05f, end * z) > 0.0f;
+        all += 2;
+      }
+    }
+  }
+  EXPECT_GT(ruts, 2 * between) << "of " << all;
+}
+
+// The mask of the ground is the depth below the brim: where a puddle's rectangle lies, some vertex has it at its
+// deepest.
+TEST(City, GroundCarriesTheDepthOfItsHollows) {
+  const StandingWater water = flood_streets();
+  for (const Basin& basin : water.basins) {
+    float deepest = 0.0f;
+    for (const Mesh& mesh : town().meshes) {
+      for (const auto& [mat, primitive] : mesh.primitives) {
+        if (mat != Mat::asphalt && mat != Mat::setts) continue;
+        for (const Vertex& v : primitive.vertices) {
+          if (v.position_m.x >= basin.minimum_m.x && v.position_m.x <= basin.maximum_m.x &&
+              v.position_m.z >= basin.minimum_m.y && v.position_m.z <= basin.maximum_m.y)
+            deepest = std::max(deepest, v.puddle_depth_m);
+        }
+      }
+    }
+    EXPECT_GT(deepest, 0.3f * basin.maximum_depth_m) << basin.minimum_m.x << ", " << basin.minimum_m.y;
+  }
 }
 
 }  // namespace
