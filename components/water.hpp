@@ -37,7 +37,7 @@ struct Puddle {
   PuddleShape shape = PuddleShape::bowl;
   bool by_height = false;  // depth from the ground's height instead of from a mask
   float drain_mm_per_hour = 2.0f;         // through the bottom
-  float evaporation_mm_per_hour = 0.1f;   // after rain: 12 C and 75 % humidity; while it rains, none
+  float evaporation_mm_per_hour = 0.1f;   // after rain: 12 C and 60 % humidity; while it rains, none
   float initial_fill = -1.0f;    // share of the depth; -1: what the rain at the beginning brings in history_min
   float history_min = 20.0f;
   float time_scale = 1.0f;       // how fast it fills and dries; 1 is true
@@ -55,6 +55,37 @@ struct WetGround {
   float humidity = 0.75f;         // relative, once the rain has stopped; while it falls the air is full
   float temperature_c = 14.0f;    // of air and ground
   bool published = false;         // of wetness=everywhere: Lagarde's factors as printed, instead of the film model
+};
+
+// Rings on the water that stands, on the emitter's entity. Every emitter gets one, with these defaults, when a scene is
+// opened. (Tatarchuk and Isidoro 2006, section 4; s_o, theta_o and the influence p_i are the puddles' materials'.)
+struct Ripples {
+  bool published = false;          // as printed: dampened sines by drops' mass, 16 bits; their level drifts
+  float strength = 1.0f;           // multiplies all slopes; 1 is true
+  float wave_speed_mps = 0.225f;   // of all waves on the lattice: real ones of 10 to 50 mm run so
+  float decay_per_s = 1.8f;        // of their heights
+  float tile_m = 1.0f;             // edge of the tile that all puddles share
+  float seed_cells = 3.0f;         // least deviation of a ring's seed, in cells of the lattice; narrower ones break up
+};
+
+// Something that moves through standing water and leaves a wake: a disc about the entity's place.
+struct Wader {
+  float radius_m = 0.15f;
+  float draft_mm = 6.0f;   // of the water that it pushes before it
+  float height_m = 0.4f;   // its place may be so far above or below the water
+};
+
+// Settings of the splashes of the rain (Tatarchuk and Isidoro 2006, section 3.3), on the emitter's entity. Every emitter
+// gets them, with these defaults, when a scene is opened.
+struct Splashes {
+  float reach_m = 20.0f;               // single splashes out to here
+  float secondary_reach_m = 3.0f;      // with their droplets out to here
+  std::int32_t most_splashes = 20000;  // alive at once, on average; the less important are thinned out
+  float size = 1.0f, size_variation = 0.25f;        // multiplies the crowns; either way, at random
+  float opacity = 1.0f, opacity_variation = 0.3f;   // likewise
+  float edge_strength = 0.8f, edge_bias = 0.55f;    // e_s and e_b of section 3.2
+  float backlight = 1.0f;              // multiplies the light of lamps; 1 is true
+  bool published = false;              // of splashes=random: as printed
 };
 
 // A glass surface that droplets sit on and run down: a rectangle in the entity's x and y.

@@ -88,6 +88,8 @@ void give_techniques(Registry& registry) {
     if (!registry.find<StreakSprites>(entity)) registry.emplace<StreakSprites>(entity);
     if (!registry.find<NearDrops>(entity)) registry.emplace<NearDrops>(entity);
     if (!registry.find<WetGround>(entity)) registry.emplace<WetGround>(entity);
+    if (!registry.find<Splashes>(entity)) registry.emplace<Splashes>(entity);
+    if (!registry.find<Ripples>(entity)) registry.emplace<Ripples>(entity);
     if (!snows) registry.emplace<Snowfall>(entity);
   }
 }

@@ -17,11 +17,12 @@ local resources = {
   water_mask = { format = "rg8" },
   water      = { format = "rg16f" },             -- mm of standing water, mm of film
   puddle_list = { format = "none" },
-  ripples    = { format = "rgba16f", width = 256, height = 256, layers = 2, persistent = true },
+  ripples    = { format = "rgba16f", width = 256, height = 256, layers = 3, persistent = true },  -- shared, near, drips
   overhead   = { format = "rgba16f", width = 128, height = 128, persistent = true },  -- light from above, for splashes
-  mirrors    = { format = "rgba16f", scale = 1 / 2, layers = 2 },
+  mirrors    = { format = "rgba16f", scale = 1 / 2, layers = 2, mips = 6 },
   probes     = { format = "rgba16f", width = 448, height = 65, layers = 4, persistent = true },
   reflections = { format = "rgba16f", scale = 1 / 2 },
+  lamp_highlights = { format = "none" },  -- connected, pass shade leaves them to pass reflections where that draws lamps
 
   -- Kept while nothing moves.
   -- Shelter from rain and snow; a layer for each map that occlusion=jittered may draw.
@@ -49,13 +50,36 @@ local passes = {
   { pass = "occlusion_map", occlusion_map = "occlusion_map", parameters = { tolerance_deg = 2 } },
   { pass = "shadow_maps", shadow_atlas = "shadow_atlas" },
 
+  -- Films of water and puddles, laid over the G-buffer.
+  { pass = "puddles", puddle_list = "puddle_list" },
+  { pass = "ripples", ripples = "ripples" },
+  { pass = "wet_surfaces", depth = "depth", albedo = "albedo", normal = "normal", water_mask = "water_mask",
+    occlusion_map = "occlusion_map", ripples = "ripples", puddle_list = "puddle_list", water = "water" },
+
   -- Light. threshold: of a white pixel; a lamp that adds less to a tile of pixels is left out there.
   { pass = "environment", environment = "environment", shadow_atlas = "shadow_atlas" },
+  { pass = "probes", probes = "probes", shadow_atlas = "shadow_atlas" },
   { pass = "light_lists", depth = "depth", albedo = "albedo", normal = "normal", shadow_atlas = "shadow_atlas",
     light_lists = "light_lists", parameters = { threshold = 0.003 } },
   { pass = "shade", depth = "depth", albedo = "albedo", normal = "normal", emissive = "emissive",
-    light_lists = "light_lists", shadow_atlas = "shadow_atlas", environment = "environment", colour = "colour" },
-  { pass = "glass", colour = "colour", depth = "depth", environment = "environment" },
+    light_lists = "light_lists", shadow_atlas = "shadow_atlas", environment = "environment", colour = "colour",
+    highlights = "lamp_highlights" },
+  -- software_share: of the picture's width and height that software OpenGL draws.
+  { pass = "mirrors", light_lists = "light_lists", shadow_atlas = "shadow_atlas", environment = "environment",
+    mirrors = "mirrors", parameters = { software_share = 2 } },
+  -- What wet ground mirrors, in place of the captured surroundings; by rays through the picture, or by stand-ins.
+  { pass = "reflections", depth = "depth", albedo = "albedo", normal = "normal", emissive = "emissive",
+    light_lists = "light_lists", shadow_atlas = "shadow_atlas", highlights = "lamp_highlights", colour = "colour",
+    reflections = "reflections" },
+  { pass = "reflections_over", colour = "colour", depth = "depth", albedo = "albedo", normal = "normal",
+    emissive = "emissive", environment = "environment", mirrors = "mirrors", probes = "probes",
+    reflections = "reflections" },
+  -- Rain on marked things (component rain_catcher): rings of splatter, and mist of splashes along their outlines.
+  { pass = "splatter", colour = "colour", depth = "depth", normal = "normal", occlusion_map = "occlusion_map",
+    environment = "environment" },
+  { pass = "halos", colour = "colour", depth = "depth", occlusion_map = "occlusion_map", environment = "environment" },
+
+  { pass = "glass", colour = "colour", depth = "depth", environment = "environment", mirrors = "mirrors" },
 
   -- Air. forward: how much mist scatters ahead; 0 evenly, towards 1 tighter and brighter halos.
   { pass = "airlight", depth = "depth", light_lists = "light_lists", shadow_atlas = "shadow_atlas", airlight = "airlight",
@@ -69,7 +93,17 @@ local passes = {
   { pass = "rain_cells" },
   { pass = "rain_splat", depth = "depth", occlusion_map = "occlusion_map", near = "near_drops" },
   { pass = "rain_sprites", depth = "depth", occlusion_map = "occlusion_map" },
+  -- Splashes where the drops land, and what lights them that is no lamp: into the same sums. What software OpenGL affords:
+  -- how many, out to how many metres, with droplets to how many.
+  { pass = "splash_overhead", overhead = "overhead", occlusion_map = "occlusion_map" },
+  { pass = "splash_list", depth = "depth", normal = "normal", occlusion_map = "occlusion_map", water = "water",
+    overhead = "overhead", environment = "environment",
+    parameters = { software_most = 2000, software_reach = 8, software_secondary_reach = 1.5 } },
+  { pass = "splash_draw", depth = "depth" },
+  -- Drips from edges, into the same sums; and near ones (or billboards) as pictures of drops, over the picture.
+  { pass = "drips", depth = "depth" },
   { pass = "rain_composite", colour = "colour", environment = "environment" },
+  { pass = "drips_over", colour = "colour", depth = "depth", environment = "environment" },
 
   { pass = "double_cone", colour = "colour", depth = "depth", occlusion_map = "occlusion_map",
     environment = "environment", rain_light = "rain_light" },

@@ -1,33 +1,28 @@
 #include "systems/ripple/ripple.hpp"
 
+#include "systems/ripple/coverage.hpp"
 #include "systems/ripple_frame.hpp"
 
 namespace petrichor {
-
-std::vector<PassOffer> ripple_passes() {
-  return {};
-}
-
-void simulate_ripples(Registry&, double time_s, double step_s) {}
-void extract_ripples(const Registry&, Frame&, double time_s) {}
-Result<void> chart_ripples(const ChartRun&) {
-  return {};
-}
 
 Ladder ripples_ladder() {
   Ladder l;
   l.effect = Effect::ripples;
   l.name = "ripples";
   l.meaning = "rings on standing water";
-  l.truth = "TODO";
-  l.error_measure = "TODO";
-  l.rungs = {{"none", "still water", {}},
-             {"rings", "rings stamped in closed form", {"ripples"}},
-             {"euler", "forward Euler, a warning", {"ripples"}},
-             {"verlet5", "Verlet, five points", {"ripples"}},
-             {"verlet9", "Verlet, nine points", {"ripples"}},
-             {"near_tile", "verlet9, with a tile of the world near the eye", {"ripples"}}};
-  l.coverage = [](const Frame&) { return 0.0; };
+  l.truth = "each wave of real water by itself, with its own speed (FFTW), from the same drops";
+  l.error_measure =
+      "root mean square of two parts: slopes against the truth's over a second of rain, and how much of what lies a "
+      "tile's edge apart is the same again";
+  // Figures of `petrichor chart ripples`.
+  l.rungs = {
+      {"none", "still water", {}, 0.0, 1.0, true},
+      {"rings", "the strongest rings, stamped in closed form", {"ripples"}, 0.05, 0.85, true},
+      {"euler", "a lattice by forward Euler as published: it blows up at any step", {"ripples"}, 0.06, 5.0, false},
+      {"verlet5", "a lattice by Verlet's scheme, five points", {"ripples"}, 0.06, 0.83, true},
+      {"verlet9", "the same with nine points, round rings", {"ripples"}, 0.06, 0.82, true},
+      {"near_tile", "and a tile of the world near the eye with the field's own drops", {"ripples"}, 0.12, 0.6, true}};
+  l.coverage = [](const Frame& frame) { return frame.ripples && frame.ripples->seen ? water_coverage(frame) : 0.0; };
   return l;
 }
 

@@ -1,0 +1,52 @@
+#pragma once
+// What happens to the water, tick by tick: kept on the processor, so that the waves on the GPU are a function of it
+// alone and not of which frames were drawn.
+
+#include <cstdint>
+#include <deque>
+
+#include "components/water.hpp"
+#include "components/weather.hpp"
+#include "engine/ecs/registry.hpp"
+#include "systems/ripple_frame.hpp"
+#include "systems/wind_motion.hpp"
+
+namespace petrichor {
+
+// The waves at a time are those of a simulation that began from rest this long before the newest whole multiple of
+// ripple_epoch_s: what is older has died to exp(-2 s x decay). So a frame that is drawn alone makes up at most
+// ripple_epoch_s + ripple_memory_s of ticks, and one that follows another only what lies between them; while one epoch
+// ends, the waves of the next are begun beside it (a third more work).
+constexpr double ripple_epoch_s = 6.0, ripple_memory_s = 2.0;
+
+// The first tick of the run that gives the waves at `tick`, 0 or later; of the near tile too, which also begins anew
+// where it was set down anew at tick `since`.
+std::int64_t run_start(std::int64_t tick, std::int64_t since, double step_s);
+
+struct WaderPlace {
+  std::uint32_t entity;
+  glm::dvec3 place_m;
+};
+
+// On the emitter's entity. Written by simulate_ripples only.
+struct RippleHistory {
+  std::uint64_t identity = 0;
+  Emitter solved;  // what rain and motion belong to
+  RippleSettings settings;
+  double step_s = 0.0;
+  std::shared_ptr<const RippleRain> rain;
+  WindMotion motion;
+  std::int64_t next_tick = -1;
+  float slope_variance = 0.0f;
+  std::vector<WaderPlace> waders;  // at the last tick
+  std::deque<std::shared_ptr<const RippleChunk>> full;
+  RippleChunk newest;
+};
+
+// The rain as rings see it. Classes under this diameter make none that could be seen (amplitude goes with D^2.6).
+constexpr float smallest_ring_mm = 0.9f;
+std::shared_ptr<const RippleRain> make_ripple_rain(const Emitter&, const RippleSettings&);
+
+RippleSettings ripple_settings(const Registry&);
+
+}  // namespace petrichor
