@@ -26,6 +26,7 @@
 #include "systems/rainfall/snow/chart.hpp"
 #include "systems/rainfall/snow/extract.hpp"
 #include "systems/rainfall/sprites/sprites.hpp"
+#include "systems/reflection/extract.hpp"
 #include "systems/reflection/reflection.hpp"
 #include "systems/ripple/ripple.hpp"
 #include "systems/scene/propagate.hpp"
@@ -209,23 +210,24 @@ std::vector<SystemEntry<SystemContext>> all_systems() {
        .run = [](SystemContext& c) { extract_drips(c.registry, *c.frame, c.time_s); }},
       {.name = "extract_splashes",
        .phase = Phase::extract,
-       .reads = {"emitter", "frame.camera", "frame.rain", "frame.drips"},
+       .reads = {"emitter", "splashes", "frame.camera", "frame.instances", "frame.lights", "frame.rain", "frame.drips"},
        .writes = {"frame.splashes"},
        .needs = {"emitter"},
-       .after = {"extract_rainfall", "extract_drips"},
-       .run = [](SystemContext& c) { extract_splashes(c.registry, *c.frame, c.time_s); }},
+       .after = {"extract_instances", "extract_lights", "extract_rainfall", "extract_drips"},
+       .run = [](SystemContext& c) { extract_splashes(c.registry, *c.frame, c.models); }},
       {.name = "extract_splatter",
        .phase = Phase::extract,
-       .reads = {"frame.instances", "frame.rain"},
+       .reads = {"rain_catcher", "mesh_instance", "parent", "frame.instances", "frame.rain"},
        .writes = {"frame.splatter"},
-       .needs = {"emitter"},
+       .needs = {"rain_catcher"},
        .after = {"extract_instances", "extract_rainfall"},
-       .run = [](SystemContext& c) { extract_splatter(c.registry, *c.frame); }},
+       .run = [](SystemContext& c) { extract_splatter(c.registry, c.models, *c.frame); }},
       {.name = "extract_puddles",
        .phase = Phase::extract,
-       .reads = {"puddle", "puddle_water", "world_transform"},
+       .reads = {"puddle", "puddle_water", "world_transform", "frame.camera"},
        .writes = {"frame.puddles"},
        .needs = {"puddle"},
+       .after = {"extract_camera"},
        .run = [](SystemContext& c) { extract_puddles(c.registry, *c.frame); }},
       {.name = "extract_wetness",
        .phase = Phase::extract,
@@ -240,11 +242,21 @@ std::vector<SystemEntry<SystemContext>> all_systems() {
        .needs = {"emitter"},
        .after = {"extract_rainfall", "extract_drips", "extract_puddles"},
        .run = [](SystemContext& c) { extract_ripples(c.registry, *c.frame, c.time_s); }},
+      {.name = "extract_reflectors",
+       .phase = Phase::extract,
+       .reads = {"frame.instances", "frame.rain", "frame.puddles", "frame.wetness"},
+       .writes = {"frame.reflectors"},
+       .needs = {"mesh_instance"},
+       .after = {"extract_instances", "extract_rainfall", "extract_puddles", "extract_wetness"},
+       .run = [finder = std::make_shared<ReflectorFinder>()](SystemContext& c) {
+         extract_reflectors(*finder, c.models, *c.frame);
+       }},
       {.name = "extract_mirrors",
        .phase = Phase::extract,
-       .reads = {"frame.camera", "frame.instances", "frame.puddles", "world_transform"},
+       .reads = {"frame.camera", "frame.rain", "frame.puddles", "glass_pane", "reflection_probe", "mesh_instance", "parent",
+                 "world_transform"},
        .writes = {"frame.mirrors"},
-       .after = {"extract_camera", "extract_instances", "extract_puddles"},
+       .after = {"extract_camera", "extract_rainfall", "extract_puddles"},
        .run = [](SystemContext& c) { extract_mirrors(c.registry, *c.frame); }},
   };
 }
@@ -287,10 +299,12 @@ std::vector<Ladder> all_ladders() {
 
 namespace {
 
+FrameRain rain_of_emitter(const Emitter& emitter, const Wind& wind, double time_s) {
+  return make_frame_rain(emitter, start_rain_motion(emitter, wind), {}, 1, 1, time_s);
+}
+
 Result<void> chart_shelter(const ChartRun& run) {
-  return chart_occlusion(run, [](const Emitter& emitter, const Wind& wind, double time_s) {
-    return make_frame_rain(emitter, start_rain_motion(emitter, wind), {}, 1, 1, time_s);
-  });
+  return chart_occlusion(run, rain_of_emitter);
 }
 
 }  // namespace
@@ -302,13 +316,15 @@ std::vector<ChartOffer> all_charts() {
       {"classes", "how many size classes of drops are enough", chart_classes},
       {"occlusion", "maps of shelter against rays, on a street of awnings and in the town", chart_shelter},
       {"streaks", "size of the streak table against its error, and what nearest-four reading costs", chart_streaks},
-      {"splashes", "splashes of the rain, against every impact", chart_splashes},
+      {"splashes", "splashes of the rain, against every impact",
+       [](const ChartRun& run) { return chart_splashes(run, rain_of_emitter); }},
       {"halos", "mist of splashes along outlines, by fins and by a thin layer", chart_halos},
       {"drips", "drops that fall from edges", chart_drips},
       {"ripples", "rings on water, against the spectral solution", chart_ripples},
       {"puddles", "standing water, against a fine balance", chart_puddles},
       {"wetness", "films of water on surfaces, against rays", chart_wetness},
-      {"reflections", "what wet ground mirrors, against rays", chart_reflections},
+      {"reflections", "what wet ground mirrors, against rays",
+       [](const ChartRun& run) { return chart_reflections(run, all_passes); }},
       {"near_drops", "drops near the eye, by maps and by closed form, against traced ones", chart_near_drops},
   };
 }
