@@ -67,7 +67,7 @@ struct OcclusionUniforms {
   vec4 fall_texel[OCCLUSION_MAPS];  // xyz unit fall direction in the world, w: texel edge, m; 0: there is no map
   vec4 size_depth[OCCLUSION_MAPS];  // x texels per side, y metres from depth 1 (upper end) to depth 0, z bias, m,
                                     // w share of the precipitation that falls about this way
-  uvec4 counts;                     // maps; the one nearest to the mean fall; how many were redrawn; 0
+  uvec4 counts;                     // maps; the one nearest to the mean fall; how many were redrawn; of remembered falls, behind the maps
 };
 
 #ifdef __cplusplus

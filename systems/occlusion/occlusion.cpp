@@ -9,6 +9,7 @@
 #include "engine/ecs/registry.hpp"
 #include "systems/gpu_scene.hpp"
 #include "systems/occlusion/falls.hpp"
+#include "systems/wetness_frame.hpp"
 
 namespace petrichor {
 namespace {
@@ -56,9 +57,13 @@ std::vector<float> question(const Frame& frame, int count) {
   return all;
 }
 
+// Something is still wet from rain that has stopped: where, the maps along its fall say.
+bool is_wet(const Frame& frame) {
+  return frame.wetness && frame.wetness->rain;
+}
+
 // The directions of this frame's maps and their shares: on the lattice, each once.
-std::vector<FallShare> directions(const PassContext& context, MapState& state, int most) {
-  const Frame& frame = context.frame;
+std::vector<FallShare> directions(const PassContext& context, const Frame& frame, MapState& state, int most) {
   const OcclusionRung rung = rung_of(frame);
   if (rung == OcclusionRung::vertical) return {{{0.0f, -1.0f, 0.0f}, 1.0f}};
   const float tolerance = glm::radians(context.parameter("tolerance_deg"));
@@ -134,11 +139,27 @@ void draw_maps(PassContext& context, MapState& state) {
       for (DrawnMap& map : state.maps) map.drawn = false;
     state.geometry_version = frame.geometry_version;
     state.scene = frame.scene;
-    const std::vector<FallShare> falls = directions(context, state, static_cast<int>(state.maps.size()));
+    // The weather that the maps are for: that of now, or that which left things wet.
+    Frame past;
+    if (!precipitates(frame) && is_wet(frame)) {
+      past.techniques = frame.techniques;
+      past.rain = frame.wetness->rain;
+      past.wind = frame.wetness->wind;
+    }
+    const Frame& weather = past.rain ? past : frame;
+    // Behind them, where there is room, one along a fall that is remembered for what it wetted.
+    const bool remembers = is_wet(frame) && frame.wetness->remembered > 1 && state.maps.size() > 1;
+    const int most = static_cast<int>(state.maps.size()) - (remembers ? 1 : 0);
+    std::vector<FallShare> falls = directions(context, weather, state, most);
+    const auto present = static_cast<std::uint32_t>(falls.size());
+    if (remembers)
+      falls.push_back({lattice_direction(frame.wetness->remembered_fall_mps,
+                                         glm::radians(context.parameter("tolerance_deg"))),
+                       0.0f});
     const float step = context.parameter("step_m"),
                 texel_m = context.parameter("side_m") / static_cast<float>(texture.width);
     const bool published = context.parameter("published") != 0.0f;
-    const glm::vec3 mean = mean_fall(frame);
+    const glm::vec3 mean = mean_fall(weather);
     bool drew = false;
     for (std::size_t i = 0; i < falls.size(); ++i) {
       DrawnMap& map = state.maps[i];
@@ -174,9 +195,10 @@ void draw_maps(PassContext& context, MapState& state) {
       uniforms.fall_texel[i] = {fall, texel_m};
       uniforms.size_depth[i] = {static_cast<float>(texture.width), placement.depth_m, bias_m, falls[i].share};
       const glm::vec3 nearest = uniforms.fall_texel[uniforms.counts.y];
-      if (glm::dot(fall, mean) > glm::dot(nearest, mean)) uniforms.counts.y = static_cast<std::uint32_t>(i);
+      if (i < present && glm::dot(fall, mean) > glm::dot(nearest, mean)) uniforms.counts.y = static_cast<std::uint32_t>(i);
     }
-    uniforms.counts.x = static_cast<std::uint32_t>(falls.size());
+    uniforms.counts.x = present;
+    uniforms.counts.w = remembers ? 1 : 0;
     if (drew) {
       glDisable(GL_DEPTH_TEST);
       upload_instances(*frame.scene, frame);  // what the other passes draw is relative to the camera
@@ -227,7 +249,7 @@ std::vector<PassOffer> occlusion_passes() {
                      {"maps", 8.0},
                      {"published", 0.0}},
                     {{"depth", {{"systems/geometry/depth.vert.glsl", "systems/geometry/depth.frag.glsl"}, {}}}},
-                    precipitates,
+                    [](const Frame& frame) { return precipitates(frame) || is_wet(frame); },
                     [state](PassContext& context) { draw_maps(context, *state); }});
   return offers;
 }

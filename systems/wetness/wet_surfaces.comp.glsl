@@ -1,0 +1,208 @@
+#version 450 core
+// Lays films of water over the G-buffer, in place: darker base, smoother and flatter surface. LEVEL: 0 standing water
+// alone, 1 one film everywhere, 2 by exposure, 3 with films that run. MASK: the G-buffer knows kinds of material.
+// STANDING: there are puddles.
+#define GBUFFER_WRITER
+#include "systems/geometry/gbuffer.glsl"
+#include "systems/wetness/optics.h"
+#include "systems/wetness/wetness_shared.h"
+#if LEVEL >= 2
+#include "systems/wetness/exposure.glsl"
+#include "systems/wetness/flow.glsl"
+#endif
+#ifdef MASK
+#include "systems/wet_materials.glsl"
+#endif
+#ifdef STANDING
+#define RIPPLE_UNIT 8
+#include "systems/puddle/puddle.glsl"
+#include "systems/ripple/ripple.glsl"
+#endif
+
+layout(local_size_x = 8, local_size_y = 8) in;
+layout(binding = 0) uniform sampler2D depth_texture;
+layout(binding = 0, rgba8) uniform image2D albedo_image;
+layout(binding = 1, rgba16) uniform image2D normal_image;
+layout(binding = 2, rg16f) uniform writeonly image2D water_image;
+#ifdef MASK
+layout(binding = 1) uniform sampler2D mask_texture;
+#endif
+layout(std140, binding = WETNESS_UNIFORMS_BINDING) uniform WetnessBlock { WetnessGpu wetness; };
+layout(std430, binding = WETNESS_FILMS_BINDING) readonly buffer FilmBlock { vec4 films[]; };
+
+const float film_exposures = 24.0, film_porosities = 4.0, remembered_exposures = 6.0, most_exposure = 4.0;
+
+// The plane of the surface itself, without its relief, from depths alone: near / depth is the axial distance, and over
+// a plane its inverse, so depth itself, is linear in the picture. Of each pair of neighbours the one that is more
+// nearly in the plane. World, unit, towards the viewer.
+vec3 plane_normal(ivec2 texel, float depth) {
+  ivec2 last = ivec2(frame.size.xy) - 1;
+  float right = texelFetch(depth_texture, ivec2(min(texel.x + 1, last.x), texel.y), 0).r - depth;
+  float left = depth - texelFetch(depth_texture, ivec2(max(texel.x - 1, 0), texel.y), 0).r;
+  float up = texelFetch(depth_texture, ivec2(texel.x, min(texel.y + 1, last.y)), 0).r - depth;
+  float down = depth - texelFetch(depth_texture, ivec2(texel.x, max(texel.y - 1, 0)), 0).r;
+  if (texel.x == last.x || (texel.x > 0 && abs(left) < abs(right))) right = left;
+  if (texel.y == last.y || (texel.y > 0 && abs(down) < abs(up))) up = down;
+  // View ray (x, y, -1) with x, y linear in the pixel; n . ray / c = 1 / distance.
+  vec2 lens = vec2(frame.lens.x * frame.lens.y, frame.lens.x);
+  vec2 ray = ndc_of_pixel(vec2(texel) + 0.5) * lens;
+  vec2 n = vec2(right, up) * frame.size.xy / (2.0 * lens);
+  vec3 view_normal = vec3(n, dot(n, ray) - depth);
+  return normalize(-(transpose(mat3(frame.view)) * view_normal));
+}
+
+#if LEVEL >= 1
+struct Wet {
+  float film_m;
+  float soaked;  // filling of the pores
+};
+
+// Of the table, between its exposures, slopes and porosities. A film's slope has a level of three on a log scale.
+vec4 film_row(float porosity_row, float row, float exposure_index) {
+  float rows = wetness.spread.w;
+  float i = min(floor(exposure_index), film_exposures - 2.0);
+  int base = int((porosity_row * rows + row) * film_exposures + i);
+  return mix(films[base], films[base + 1], exposure_index - i);
+}
+
+vec4 film_of(float porosity, float e, float remembered) {
+  float q = porosity * (film_porosities - 1.0), q0 = min(floor(q), film_porosities - 2.0);
+  float x = pow(clamp(e / most_exposure, 0.0, 1.0), 1.0 / 3.0) * (film_exposures - 1.0);
+  vec4 found = mix(film_row(q0, 0.0, x), film_row(q0 + 1.0, 0.0, x), q - q0);
+  for (int once = 0; once < (wetness.spread.w > 1.0 && remembered > 0.0 ? 1 : 0); ++once) {
+    float y = pow(clamp(remembered / most_exposure, 0.0, 1.0), 1.0 / 3.0) * (remembered_exposures - 1.0);
+    float j = min(floor(y), remembered_exposures - 2.0);
+    found = mix(mix(film_row(q0, j, x), film_row(q0 + 1.0, j, x), q - q0),
+                mix(film_row(q0, j + 1.0, x), film_row(q0 + 1.0, j + 1.0, x), q - q0), y - j);
+  }
+  return found;
+}
+
+Wet wet_of(vec4 row, float slope) {
+  float t = clamp(log(max(slope, 0.02) * 50.0) * (2.0 / 3.912023), 0.0, 2.0);
+  float film = t < 1.0 ? mix(row.x, row.y, t) : mix(row.y, row.z, t - 1.0);
+  return Wet(film * 1e-3, row.w);
+}
+#endif
+
+void main() {
+  ivec2 texel = ivec2(gl_GlobalInvocationID.xy);
+  bool inside = all(lessThan(texel, ivec2(frame.size.xy)));
+  float depth = inside ? texelFetch(depth_texture, texel, 0).r : 0.0;
+  vec2 water_mm = vec2(0.0);  // standing, film
+  // A loop for an if: software OpenGL leaves a loop that no pixel is in, but walks through both sides of a branch.
+  for (int once = 0; once < (depth > 0.0 ? 1 : 0); ++once) {
+    vec4 stored_albedo = imageLoad(albedo_image, texel);
+    vec4 stored_normal = imageLoad(normal_image, texel);
+    Surface s = decode_surface(stored_albedo, stored_normal, vec3(0.0));
+    vec3 plane = s.normal;
+    vec3 place = relative_position(vec2(texel) + 0.5, depth);
+    float roughness = s.roughness;
+    float porosity = porosity_of_roughness(roughness);
+    float takes = takes_film(roughness, s.metallic);
+#ifdef MASK
+    vec2 mask = texelFetch(mask_texture, texel, 0).rg;
+    uint kind = wet_kind(mask);
+    porosity = porosity_of(wet_materials[kind], roughness);
+    if (kind == 0u) takes = 0.0;
+#endif
+    Surface dry = s;
+#ifdef STANDING
+    StandingWater standing = standing_water(place, mask);
+#endif
+#if LEVEL == 1
+    Wet w = Wet(wetness.open_film.x * 1e-3, wetness.open_film.y);
+#elif LEVEL >= 2
+    plane = plane_normal(texel, depth);
+    // Where the plane is not what is shaded (an edge between two surfaces, a card of leaves), the shading's.
+    if (dot(plane, s.normal) < 0.6) plane = s.normal;
+    float e = exposure(place, plane, wetness.spread.xyz), before = 0.0;
+    for (int again = 0; again < (wetness.spread.w > 1.0 ? 1 : 0); ++again)
+      before = remembered_exposure(place, plane, wetness.spread.xyz);
+    float slope = sqrt(max(1.0 - plane.y * plane.y, 0.0));
+    Wet w = wet_of(film_of(porosity, e, before), slope);
+    // The rung of one film everywhere gives way to this one.
+    float elsewhere = wetness.shares.x / max(dot(wetness.shares.xyz, vec3(1.0)), 1e-6);
+    w.film_m = mix(w.film_m, wetness.open_film.x * 1e-3, elsewhere);
+    w.soaked = mix(w.soaked, wetness.open_film.y, elsewhere);
+#endif
+#if LEVEL >= 1
+    float strength = clamp(dot(wetness.shares.xyz, vec3(1.0)), 0.0, 1.0);
+    vec3 film_normal = plane;
+#if LEVEL == 3
+    // Both patterns where either is: walls and slopes have few pixels in common.
+    vec3 world = place + wetness.world_from_camera.xyz;
+    float share = wetness.shares.z / max(dot(wetness.shares.xyz, vec3(1.0)), 1e-6);
+    float footprint = -dot(place, vec3(frame.view[0].z, frame.view[1].z, frame.view[2].z)) / frame.lens.z;
+    footprint /= max(abs(dot(plane, normalize(place))), 0.1);
+    bool wall = slope > 0.7 && w.film_m > 2e-6, ground = slope < 0.5 && w.film_m > 5e-5;
+    for (int once_more = 0; once_more < (wall ? 1 : 0); ++once_more) {
+      vec3 level = normalize(vec3(plane.z, 0.0, -plane.x));
+      Flow flow = wall_flow(dot(world, level), world.y, wetness.flown.y, footprint);
+      film_normal = normalize(plane - level * (flow.slope.x * share));
+      w.film_m *= mix(1.0, flow.thickness, share);
+    }
+    for (int once_more = 0; once_more < (ground ? 1 : 0); ++once_more) {
+      vec2 way = plane.xz / max(length(plane.xz), 1e-4);
+      float steep = clamp(slope * 25.0 - 0.2, 0.0, 1.0) * share;
+      Flow flow = slope_flow(world.xz, way, wetness.flown.x, footprint);
+      vec2 tilt = (flow.slope.y * way + flow.slope.x * vec2(-way.y, way.x)) * steep;
+      film_normal = normalize(plane - vec3(tilt.x, 0.0, tilt.y));
+      w.film_m *= mix(1.0, flow.thickness, steep);
+    }
+#endif
+    float film_m = w.film_m;
+#ifdef STANDING
+    if (standing.depth_m > 0.0) w = Wet(max(w.film_m, standing.depth_m), 1.0);
+#endif
+    float wetted = wetted_share(w.film_m) * takes * strength;
+    float soaked = w.soaked * takes * strength;
+    float drowned = drowned_share(w.film_m, relief_m(roughness)) * takes * strength;
+    s.albedo = wet_base_colour(s.albedo, porosity, soaked, wetted);
+    // Pits smaller than the film fill up everywhere; where it drowns the relief its own surface is seen, ruffled by
+    // the drops that hit it (alpha^2 grows by twice the variance of slopes).
+    float ruffled = film_slope_rms(wetness.open_film.w, w.film_m * max(plane.y, 0.0));
+    float film_roughness = sqrt(sqrt(1.6e-5 + 2.0 * ruffled * ruffled));
+    s.roughness = mix(roughness * (1.0 - 0.25 * wetted), min(film_roughness, roughness), drowned);
+    s.normal = normalize(mix(s.normal, film_normal, drowned));
+    water_mm.y = film_m * 1e3 * strength;
+#if LEVEL == 1
+    if (wetness.open_film.z > 0.5) {  // as published
+      float wet = strength * clamp(wetness.open_film.x * 2.0, 0.0, 1.0);
+      float factor = published_factor(porosity, s.metallic);
+      s.albedo = dry.albedo * mix(1.0, factor, wet);
+      s.roughness = 1.0 - published_gloss(1.0 - roughness, factor, wet);
+      s.normal = dry.normal;
+    }
+#endif
+#endif
+#ifdef STANDING
+    for (int once_more = 0; once_more < (standing.depth_m > 0.0 ? 1 : 0); ++once_more) {
+#if LEVEL == 0
+      float soaked = wetted_share(standing.depth_m) * takes;
+      s.albedo = wet_base_colour(s.albedo, porosity, soaked, soaked);
+      float open = 1.0;
+#elif LEVEL == 1
+      float open = 1.0;
+#else
+      float open = clamp(e, 0.0, 1.0);
+#endif
+      // alpha^2 grows by twice the variance of slopes along either way.
+      float unseen = film_slope_rms(wetness.open_film.w, standing.depth_m) * open;
+      unseen *= unseen;
+      vec2 waves = vec2(0.0);
+      for (int rings = 0; rings < (wetness.flown.z > 0.5 ? 1 : 0); ++rings) {
+        Ripples found = ripples_at(place, standing.ripple_scale, standing.ripple_turn_rad, open);
+        waves = found.slope;
+        unseen = 0.5 * found.variance;
+      }
+      s = under_water(s, standing, -normalize(place), waves, sqrt(sqrt(1.6e-5 + 2.0 * unseen)));
+      water_mm.x = standing.depth_m * 1e3;
+    }
+#endif
+    s.roughness = max(s.roughness, 0.04);
+    imageStore(albedo_image, texel, encode_albedo(s));
+    imageStore(normal_image, texel, encode_normal(s));
+  }
+  if (inside && wetness.flown.w > 0.5) imageStore(water_image, texel, vec4(water_mm, 0.0, 0.0));
+}
