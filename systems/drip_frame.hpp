@@ -9,11 +9,13 @@ namespace petrichor {
 
 // A drop in the air, or hanging.
 struct FrameDrip {
-  glm::dvec3 place_m;      // world, when the shutter closes
-  glm::vec3 velocity_mps;  // 0: it hangs
-  float diameter_mm;
-  float stretch;       // height over width of its shape
-  std::uint32_t seed;  // of its looks
+  glm::dvec3 place_m;        // world, middle of the drop when the shutter closes
+  glm::vec3 velocity_mps;    // the mean while the shutter is open; 0: it hangs
+  float diameter_mm;         // of the sphere of its volume
+  float stretch;             // height over width of its shape
+  std::uint32_t seed;        // of its looks
+  std::uint16_t source = 0;  // of FrameDrips::sources
+  std::uint16_t cluster = 0;
 };
 
 // A drop that has landed within the last landing_memory_s.
@@ -26,9 +28,24 @@ struct DripLanding {
 };
 constexpr double landing_memory_s = 1.0;
 
+// How billboards of a source look: DripSource says what is what.
+struct DripLooks {
+  float opacity = 1.0f, edge_strength = 0.5f, edge_bias = 0.95f, elongation = 1.0f;
+  bool published = false;
+};
+
+// Drops that are lit by the same lamps.
+struct DripCluster {
+  glm::dvec3 centre_m;
+  float radius_m;
+};
+
 struct FrameDrips {
-  std::vector<FrameDrip> drops;
-  std::vector<DripLanding> landings;  // by time, the oldest first
+  std::vector<FrameDrip> drops;  // that the view may see
+  std::vector<DripLooks> sources;
+  std::vector<DripCluster> clusters;
+  std::vector<DripLanding> landings;  // near the camera, seen or not; by time, the oldest first
+  float reach_m = 0.0f;               // out to where drops are drawn
 };
 
 }  // namespace petrichor
