@@ -73,6 +73,12 @@ void mark_pane(Scene& scene, int parent, const glm::mat4& frame, glm::vec2 size_
   add_mark(scene, "glass_pane", parent, frame, {{"size_m", {size_m.x, size_m.y}}});
 }
 
+void mark_probe(Scene& scene, int node, glm::vec3 centre_m, float radius_m) {
+  nlohmann::json extras;
+  extras["reflection_probe"] = {{"centre_m", {centre_m.x, centre_m.y, centre_m.z}}, {"radius_m", radius_m}};
+  scene.nodes[static_cast<std::size_t>(node)].extras_json = extras.dump();
+}
+
 Scene make_city() {
   Scene scene;
   const StandingWater water = flood_streets();

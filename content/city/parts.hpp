@@ -26,6 +26,8 @@ int add_light(Scene&, const std::string& name, int parent, glm::vec3 position, c
 // Marks: a line along the frame's x, or a rectangle in its x and y (pane) or x and z (puddle), centred.
 void mark_drip(Scene&, int parent, const glm::mat4& frame, float length_m, float catchment_m, float lip_mm);
 void mark_pane(Scene&, int parent, const glm::mat4& frame, glm::vec2 size_m);
+// The object of a node mirrors its own surroundings, as captured at a place along the node's axes.
+void mark_probe(Scene&, int node, glm::vec3 centre_m, float radius_m);
 
 inline const glm::vec3 sodium_light{1.0f, 0.60f, 0.24f};
 inline const glm::vec3 white_light{1.0f, 0.86f, 0.68f};

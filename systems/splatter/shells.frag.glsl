@@ -1,0 +1,20 @@
+#version 450 core
+// A shell's rings, blended onto the shells below it.
+#include "systems/splatter/rings.glsl"
+layout(location = 0) in vec3 shell_place;
+layout(location = 1) in vec3 shell_normal;
+layout(location = 2) in float shell_struck;
+uniform float height_m, thickness_m;
+layout(location = 0) out vec4 out_colour;
+
+void main() {
+  if (shell_struck <= 0.0) discard;
+  vec3 normal = normalize(shell_normal);
+  float ring_px = 2.0 * float(SPLATTER_REACH) * catcher.crown.y * frame.lens.z / length(shell_place);
+  float near = smoothstep(2.0, 6.0, ring_px) * catcher.shells.w;
+  float depth = rings(local_place(shell_place), local_way(normal), height_m, thickness_m, catcher.crown.x * shell_struck);
+  float opacity = 1.0 - exp(-depth * near);
+  if (opacity <= 0.0) discard;
+  vec3 light = drop_ambient(normalize(shell_place)) + droplet_lamps(shell_place);
+  out_colour = vec4(min(light, vec3(60000.0)) * opacity, opacity);
+}
