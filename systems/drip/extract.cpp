@@ -91,12 +91,13 @@ void add_drop(Extraction& x, Edge& e, const DripSite& site, int index, const Fal
   const glm::dvec3 lip(pose.matrix * glm::vec4(static_cast<float>(site.along_m), 0.0f, 0.0f, 1.0f));
   // The air as it was when it let go: a fall takes a second or two, a gust several.
   const glm::dvec3 air = drip_wind(x.motion, f.detach_s) * double(s.set.wind);
+  const double blows = glm::length(air);
   double ground = longest_fall_m;
   if (x.motion.surfaces)
     ground = x.motion.surfaces->falls(s, pose, drip_wind(x.motion, f.detach_s))[static_cast<std::size_t>(index)];
   const double diameter = diameter_mm_of(f.volume_m3 / group), terminal = terminal_speed_mps(diameter);
   const auto place = [&](double age) {
-    const DripFall fall = fall_after(terminal, age);
+    const DripFall fall = fall_after(terminal, age, blows);
     return lip + glm::dvec3(air.x * fall.drift_s, -fall.fallen_m - 0.5e-3 * diameter, air.z * fall.drift_s);
   };
   const double age = x.time_s - f.detach_s, landed = time_to_fall_s(terminal, ground);
@@ -104,7 +105,7 @@ void add_drop(Extraction& x, Edge& e, const DripSite& site, int index, const Fal
                                             0x6c6f6f6bu));
   if (age >= landed) {
     if (!e.near || ground >= longest_fall_m || age - landed > landing_memory_s) return;
-    const DripFall fall = fall_after(terminal, landed);
+    const DripFall fall = fall_after(terminal, landed, blows);
     const glm::vec3 v(air.x * fall.drift_share, -fall.fall_speed_mps, air.z * fall.drift_share);
     glm::dvec3 at = lip + glm::dvec3(air.x * fall.drift_s, -ground, air.z * fall.drift_s);
     x.frame.landings.push_back({at, f.detach_s + landed, static_cast<float>(diameter), v, looks});
@@ -114,7 +115,7 @@ void add_drop(Extraction& x, Edge& e, const DripSite& site, int index, const Fal
   FrameDrip drop{};
   drop.place_m = place(age);
   const double open = x.camera.exposure_s;
-  const DripFall fall = fall_after(terminal, age);
+  const DripFall fall = fall_after(terminal, age, blows);
   drop.velocity_mps = glm::vec3(air.x * fall.drift_share, -fall.fall_speed_mps, air.z * fall.drift_share);
   if (open > 1e-6) drop.velocity_mps = glm::vec3((drop.place_m - place(std::max(age - open, 0.0))) / open);
   drop.diameter_mm = static_cast<float>(diameter);

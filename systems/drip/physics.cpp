@@ -38,13 +38,14 @@ double neck_weber(double flow_m3ps, double lip_radius_mm) {
   return drip_water_density * v * v * d / drip_surface_tension;
 }
 
-DripFall fall_after(double terminal, double time_s) {
+DripFall fall_after(double terminal, double time_s, double wind_mps) {
   const double per_s = gravity_mps2 / terminal, s = std::max(per_s * time_s, 0.0);
-  // ln cosh s = s + ln(1 + exp(-2 s)) - ln 2, which neither overflows nor, by way of expm1, cancels.
-  const double e = std::exp(-s), tanh = -std::expm1(-2.0 * s) / (1.0 + e * e);
+  // ln cosh s = s + ln(1 + exp(-2 s)) - ln 2, which does not overflow.
+  const double e = std::exp(-s), tanh = -std::expm1(-2.0 * s) / (1.0 + e * e), sech = 2.0 * e / (1.0 + e * e);
   const double ln_cosh = s < 1e-2 ? 0.5 * s * s * (1.0 - s * s / 6.0) : s + std::log1p(e * e) - std::numbers::ln2;
-  const double drift = s < 1e-2 ? s * s * s / 6.0 : s - 2.0 * std::atan(-std::expm1(-s) / (1.0 + e));
-  return {terminal / per_s * ln_cosh, terminal * tanh, drift / per_s, 1.0 - 2.0 * e / (1.0 + e * e)};
+  const double gd = 2.0 * std::atan(-std::expm1(-s) / (1.0 + e)), wind = 0.55 * std::max(wind_mps, 0.0) / terminal;
+  const double lag = wind * gd > 1e-6 ? std::log1p(wind * gd) / wind : gd;
+  return {terminal / per_s * ln_cosh, terminal * tanh, std::max(s - lag, 0.0) / per_s, 1.0 - sech / (1.0 + wind * gd)};
 }
 
 double time_to_fall_s(double terminal, double fall_m) {

@@ -18,15 +18,17 @@ double diameter_mm_of(double volume_m3);  // of a sphere
 double neck_weber(double flow_m3ps, double lip_radius_mm);
 
 // From rest, with quadratic drag: down as the closed form in still air,
-//   y = (V^2/g) ln cosh(g t / V), v = V tanh(g t / V),
-// and along with a constant wind w by the drag that this fall gives, dx'/dt = (g/V^2) v (w - x'):
-//   x' = w (1 - 1 / cosh(g t / V)), x = w (t - (V/g) gd(g t / V)), gd the Gudermannian.
-// It leaves out that the wind itself adds to the drag: 2 to 4% of the way down in 5 m/s (tests/systems/drip).
+//   y = (V^2/g) ln cosh s, v = V tanh s, s = g t / V,
+// and along with a constant wind w, which it lags behind by u, by the drag that both give, du/dt = -(g/V^2) |(v, u)| u.
+// With |(v, u)| as v + 0.55 u that is Bernoulli's equation:
+//   u = w / (cosh s (1 + 0.55 (w/V) gd s)), and its integral (V^2 / 0.55 g) ln(1 + 0.55 (w/V) gd s),
+// gd the Gudermannian. Within 8 cm after 1.5 s in 5 m/s. That the wind slows the fall is left out, up to 5% of the way
+// down in 5 m/s (tests/systems/drip/physics.cpp).
 struct DripFall {
   double fallen_m, fall_speed_mps;
   double drift_s, drift_share;  // times the wind: how far, how fast
 };
-DripFall fall_after(double terminal_mps, double time_s);
+DripFall fall_after(double terminal_mps, double time_s, double wind_mps = 0.0);
 double time_to_fall_s(double terminal_mps, double fall_m);
 
 }  // namespace petrichor

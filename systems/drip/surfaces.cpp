@@ -87,7 +87,7 @@ const std::vector<float>& DripSurfaces::falls(const DripSourceMotion& s, const D
     const glm::dvec3 lip(pose.matrix * glm::vec4(static_cast<float>(drip_site(s, i).along_m), 0.0f, 0.0f, 1.0f));
     glm::dvec3 from = lip;
     for (const double depth : depths) {
-      const DripFall fall = fall_after(terminal, time_to_fall_s(terminal, depth));
+      const DripFall fall = fall_after(terminal, time_to_fall_s(terminal, depth), glm::length(wind));
       const glm::dvec3 to = lip + wind * fall.drift_s - glm::dvec3(0.0, depth, 0.0);
       // The lip itself is no obstacle.
       const double hit = impl_->hit(from, to, from == lip ? own_edge_m : 0.0);
