@@ -146,6 +146,7 @@ std::vector<Schema> make_schemas() {
            field<&Puddle::area_share>("area_share", "", {0.01, 1}, "Wet area when full, of the rectangle."),
            field<&Puddle::catchment_ratio>("catchment_ratio", "", {0, 1000}, "Catchment area over puddle area."),
            field<&Puddle::shape>("shape", "", any, "How its wet area grows with the depth.", puddle_shapes),
+           field<&Puddle::mean_depth_share>("mean_depth_share", "", {0.3333, 0.5}, "Mean depth of a bowl when full."),
            field<&Puddle::by_height>("by_height", "", any, "Depth by the ground's height, not by a material's mask."),
            field<&Puddle::drain_mm_per_hour>("drain_mm_per_hour", "mm/h", {0, 100000}, "Lost through the bottom."),
            field<&Puddle::evaporation_mm_per_hour>("evaporation_mm_per_hour", "mm/h", {0, 1000},

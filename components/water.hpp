@@ -35,6 +35,7 @@ struct Puddle {
   float area_share = 0.7f;       // wet area when full, of the rectangle
   float catchment_ratio = 3.0f;  // area whose rain comes here, over the wet area when full
   PuddleShape shape = PuddleShape::bowl;
+  float mean_depth_share = 0.4f;   // of a bowl: its mean depth over its greatest; 1/2 a paraboloid, 1/3 a cone
   bool by_height = false;  // depth from the ground's height instead of from a mask
   float drain_mm_per_hour = 2.0f;         // through the bottom
   float evaporation_mm_per_hour = 0.1f;   // after rain: 12 C and 60 % humidity; while it rains, none

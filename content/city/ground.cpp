@@ -296,10 +296,12 @@ void add_ground(Scene& scene, const StandingWater& water) {
     node.parent = puddles;
     node.translation_m = {centre.x, basin.level_m, centre.y};
     nlohmann::json extras;
-    extras["puddle"] = {{"size_m", {size.x, size.y}},
-                        {"maximum_depth_mm", 1000.0f * basin.maximum_depth_m},
-                        {"area_share", basin.area_m2 / (size.x * size.y)},
-                        {"catchment_ratio", basin.catchment_m2 / basin.area_m2}};
+    extras["puddle"] = {
+        {"size_m", {size.x, size.y}},
+        {"maximum_depth_mm", 1000.0f * basin.maximum_depth_m},
+        {"area_share", basin.area_m2 / (size.x * size.y)},
+        {"mean_depth_share", std::clamp(basin.volume_m3 / (basin.area_m2 * basin.maximum_depth_m), 0.334f, 0.5f)},
+        {"catchment_ratio", basin.catchment_m2 / basin.area_m2}};
     node.extras_json = extras.dump();
     scene.add(std::move(node));
   }
