@@ -14,14 +14,13 @@ bool may_splash(const RainClass& c) {
 }
 
 RainLayers splash_columns(const FrameRain& rain, const FrameCamera& camera, int width, int height, float reach_m,
-                          float small_reach, float secondary_reach_m) {
+                          float least_mm, float secondary_reach_m) {
   RainLayers result;
   for (std::size_t k = 0; k < rain.classes.size(); ++k) {
     const RainClass& c = rain.classes[k];
-    if (!may_splash(c)) continue;
+    if (!may_splash(c) || c.diameter_mm < least_mm) continue;
     const float diameter = c.diameter_mm * 1e-3f;
-    const float reach = reach_m * std::clamp(c.diameter_mm / 2.0f, small_reach, 1.0f);
-    const RainBox view = view_box(camera, width, height, reach);
+    const RainBox view = view_box(camera, width, height, reach_m);
     const glm::dvec3 origin = c.origin_m - camera.position_m, velocity(c.velocity_mps);
     float life = impact::splash_life(diameter);
     if (diameter > 1e-3f && secondary_reach_m > 0.0f) life = std::max(life, impact::SECONDARY_LIFE);
@@ -48,7 +47,7 @@ RainLayers splash_columns(const FrameRain& rain, const FrameCamera& camera, int 
       gpu.box = glm::uvec4(static_cast<std::uint32_t>(count.x), static_cast<std::uint32_t>(levels),
                            static_cast<std::uint32_t>(count.y), static_cast<std::uint32_t>(result.candidates));
       gpu.velocity_diameter = glm::vec4(c.velocity_mps, diameter);
-      gpu.expected = {layer.expected, std::exp(-layer.expected), reach,
+      gpu.expected = {layer.expected, std::exp(-layer.expected), reach_m,
                       static_cast<float>(layer.expected / (edge * edge * edge))};
       result.candidates += std::uint64_t(gpu.box.x) * gpu.box.z;
       result.layers.push_back(gpu);

@@ -10,8 +10,8 @@ bool may_splash(const RainClass&);
 
 // Of every class that may splash: a layer's box counts columns along x and z, and levels along y; corner and first_cell
 // are of its lowest cell in the first column. expected.z: metres out to which it is wanted; .w: drops per m3.
-// small_reach: 1: as far for small drops as for large ones; below, that share of it for drops of 1 mm and less.
-RainLayers splash_columns(const FrameRain&, const FrameCamera&, int width, int height, float reach_m, float small_reach,
+// Smaller drops than least_mm are left out.
+RainLayers splash_columns(const FrameRain&, const FrameCamera&, int width, int height, float reach_m, float least_mm,
                           float secondary_reach_m);
 
 }  // namespace petrichor

@@ -37,6 +37,8 @@ struct Canvas {
 
   void ball(const glm::vec3& place, float radius) {
     const glm::vec3 p = seen(place);
+    // What flies out of the picture is left to the droplets.
+    if (std::max(std::abs(p.x), std::abs(p.y)) > CROWN_REACH - 0.1f - radius) return;
     const float x = texels(p.x), y = texels(p.y), r = radius / CROWN_REACH * 0.5f * CROWN_SIDE;
     // Smaller than a texel: as much of it as the ball covers.
     const float grown = std::max(r, 0.6f), kept = r * r / (grown * grown);

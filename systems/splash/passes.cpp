@@ -17,7 +17,7 @@ namespace {
 struct SplashGpuState {
   Buffer layers, cells, command, list, landings, read_back;
   Texture crown;
-  std::uint32_t capacity = 0, cell_capacity = 0;
+  std::uint32_t capacity = 0, cell_capacity = 0, columns = 0;
   bool software = false, device_known = false, listed = false;
   std::shared_ptr<RainOptics> optics;
   std::shared_ptr<RainSums> sums;
@@ -32,17 +32,17 @@ void bind(GLuint binding, const Buffer& buffer) {
 
 // What this frame's splashes are limited to, on this device.
 struct Limits {
-  float reach_m, secondary_reach_m, small_reach;
+  float reach_m, secondary_reach_m, least_mm;
   std::int32_t most;
 };
 Limits limits_of(const SplashGpuState& gpu, PassContext& context) {
   const FrameSplashes& s = *context.frame.splashes;
-  Limits l{s.reach_m, s.secondary_reach_m, 1.0f, s.most_splashes};
+  Limits l{s.reach_m, s.secondary_reach_m, 0.0f, s.most_splashes};
   if (gpu.software && context.parameter("software_most") > 0.0f) {
     l.most = std::min(l.most, static_cast<std::int32_t>(context.parameter("software_most")));
     l.reach_m = std::min(l.reach_m, context.parameter("software_reach"));
     l.secondary_reach_m = std::min(l.secondary_reach_m, context.parameter("software_secondary_reach"));
-    l.small_reach = 0.5f;
+    l.least_mm = context.parameter("software_least_mm");
   }
   return l;
 }
@@ -92,8 +92,9 @@ void list_field(SplashGpuState& gpu, PassContext& context, const Limits& limits)
   const Frame& frame = context.frame;
   const float secondary = frame.techniques.share(Effect::splashes, SplashRung::secondary);
   const RainLayers columns =
-      splash_columns(*frame.rain, frame.camera, context.width, context.height, limits.reach_m, limits.small_reach,
+      splash_columns(*frame.rain, frame.camera, context.width, context.height, limits.reach_m, limits.least_mm,
                      secondary > 0.0f ? limits.secondary_reach_m : 0.0f);
+  gpu.columns = static_cast<std::uint32_t>(columns.candidates);
   if (columns.layers.empty()) return;
   upload(gpu.layers, std::span<const RainLayerGpu>(columns.layers));
   gpu.cell_capacity = static_cast<std::uint32_t>(std::clamp<std::uint64_t>(2 * columns.candidates, 1024, 400000));
@@ -271,7 +272,7 @@ std::vector<PassOffer> splash_passes(const DropPainting& painting) {
                 {"overhead", SlotAccess::read, true},
                 {"environment", SlotAccess::read, true}};
   list.parameters = {{"least_radiance", 0.004}, {"software_most", 2000}, {"software_reach", 8},
-                     {"software_secondary_reach", 1.5}};
+                     {"software_secondary_reach", 1.5}, {"software_least_mm", 1.1}};
   const std::string folder = "systems/splash/";
   for (const char* name : {"columns", "drops", "random", "landings"})
     add_shader(list, name, folder + "splash_" + name + ".comp.glsl", {});
@@ -302,8 +303,17 @@ SplashStats splash_stats() {
   glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
   glCopyNamedBufferSubData(gpu->command.id, gpu->read_back.id, 0, 0, sizeof command);
   read_buffer(gpu->read_back, &command, sizeof command);
-  return {std::min(command.cell_groups.w, gpu->cell_capacity), std::min(command.draw_groups.w, gpu->capacity),
+  return {gpu->columns, std::min(command.cell_groups.w, gpu->cell_capacity), std::min(command.draw_groups.w, gpu->capacity),
           command.threshold.y, command.threshold.x};
+}
+
+std::vector<SplashGpu> read_splashes() {
+  const auto gpu = newest.lock();
+  std::vector<SplashGpu> all(splash_stats().splashes);
+  if (all.empty()) return all;
+  glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+  read_buffer(gpu->list, all.data(), all.size() * sizeof(SplashGpu));
+  return all;
 }
 
 }  // namespace petrichor

@@ -16,6 +16,7 @@
 #include "systems/drops/painting.hpp"
 #include "systems/frame.hpp"
 #include "systems/ladder.hpp"
+#include "systems/splash/splash_shared.h"
 #include "systems/splash_frame.hpp"
 
 namespace petrichor {
@@ -24,6 +25,7 @@ namespace petrichor {
 // and splash_draw (into the sums). Parameters of splash_list:
 //   least_radiance            of a white pixel: lamps that cannot make a splash this bright are left out; 0.004
 //   software_most, software_reach, software_secondary_reach   what software OpenGL affords at most; 0: as on GPUs
+//   software_least_mm         smaller drops' splashes are left out there: they add a few percent of the light
 std::vector<PassOffer> splash_passes(const DropPainting&);
 
 // Fills frame.splashes where it rains or drips have landed. After camera, rain, drips, instances and lights.
@@ -32,12 +34,13 @@ void extract_splashes(const Registry&, Frame&, const std::vector<std::shared_ptr
 std::vector<SplashGlow> splash_glows(const Frame&, const std::vector<std::shared_ptr<const Model>>& models, float reach_m);
 
 struct SplashStats {
-  std::uint32_t cells = 0, splashes = 0;  // listed
+  std::uint32_t columns = 0, cells = 0, splashes = 0;  // looked at; listed
   float alive = 0.0f;                     // on average, all of them
   float threshold = 0.0f;                 // importance below which they are thinned; 0: none is
 };
-// Of the frame just executed; waits for the GPU.
+// Of the frame just executed; wait for the GPU.
 SplashStats splash_stats();
+std::vector<SplashGpu> read_splashes();  // in no order
 
 // The falling rain of an emitter, in still air or wind: systems/rainfall makes it, the list of charts hands it over.
 using MakeRain = std::function<FrameRain(const Emitter&, const Wind&, double time_s)>;

@@ -44,8 +44,16 @@ void main() {
   vec2 low = corner - pad, high = corner + edge + pad;
   int across = clamp(int(ceil((high.x - low.x) / sample_m)), 1, 6);
   int along = clamp(int(ceil((high.y - low.y) / sample_m)), 1, 6);
+  // All that it may ever hold: outside the view?
+  vec2 leans = slope * (top - base);
+  vec2 whole_low = low + min(leans, 0.0), whole_high = high + max(leans, 0.0);
+  if (!touches(vec3(0.5 * (whole_low + whole_high), 0.5 * (base + top)).xzy,
+               vec3(0.5 * (whole_high - whole_low), 0.5 * (top - base)).xzy)) return;
+  vec2 closest_xz = max(max(whole_low, -whole_high), 0.0);
+  if (dot(closest_xz, closest_xz) > layer.expected.z * layer.expected.z) return;
   uint map = occlusion_map_of(velocity);
   vec3 fall = occlusion.fall_texel[map].xyz;
+  bool same_fall = dot(fall, velocity) > 0.9999 * length(velocity);
   float life = splash_life(diameter) + frame.camera_velocity_mps.w;
   float reached = layer.expected.z;  // m
   bool droplets_here = reach.w > 0.0 && diameter > 1e-3;
@@ -61,7 +69,7 @@ void main() {
     if (abs(hit) > 1e5) continue;
     float y = base + fall.y * hit;
     place = vec3(q.x + slope.x * (y - base), y, q.y + slope.y * (y - base));
-    hit = occlusion_first_hit_m(map, place);
+    hit = same_fall ? 1e6 : occlusion_first_hit_m(map, place);
     if (abs(hit) < 1e5) {
       y += fall.y * hit;
       place = vec3(q.x + slope.x * (y - base), y, q.y + slope.y * (y - base));
