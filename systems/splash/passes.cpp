@@ -26,6 +26,9 @@ struct SplashGpuState {
 
 std::weak_ptr<SplashGpuState> newest;
 
+// Columns count up to some six times what is there: so many of those wanted may be listed before they are thinned.
+constexpr std::uint32_t listed_for_each = 5;
+
 void bind(GLuint binding, const Buffer& buffer) {
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, binding, buffer.id);
 }
@@ -110,7 +113,8 @@ void list_field(SplashGpuState& gpu, PassContext& context, const Limits& limits)
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
   const Program& threshold = context.program("threshold");
   threshold.use();
-  threshold.set("most", static_cast<float>(limits.most));
+  threshold.set("most", static_cast<float>(listed_for_each) * static_cast<float>(limits.most));
+  threshold.set("of_listed", 0);
   glDispatchCompute(1, 1, 1);
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT);
   const Program& drops = context.program(shader_of(gpu, "drops"));
@@ -118,6 +122,11 @@ void list_field(SplashGpuState& gpu, PassContext& context, const Limits& limits)
   drops.set("layer_count", static_cast<unsigned>(columns.layers.size()));
   glBindBuffer(GL_DISPATCH_INDIRECT_BUFFER, gpu.command.id);
   glDispatchComputeIndirect(offsetof(SplashCommandGpu, cell_groups));
+  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+  threshold.use();
+  threshold.set("most", static_cast<float>(limits.most));
+  threshold.set("of_listed", 1);
+  glDispatchCompute(1, 1, 1);
 }
 
 // As printed: places at random, fixed to the world; how many land is as in the rain.
@@ -185,8 +194,8 @@ void list_splashes(SplashGpuState& gpu, PassContext& context) {
   gpu.device_known = true;
   gpu.listed = true;
   const Limits limits = limits_of(gpu, context);
-  // Twice what is wanted and more: as many come but once in far more frames than anyone draws.
-  gpu.capacity = 2u * static_cast<std::uint32_t>(std::max(limits.most, 0)) + 8192u;
+  // Twice what is listed on average at most, and more: it is never full, or who came first would count.
+  gpu.capacity = std::min(2u * listed_for_each * static_cast<std::uint32_t>(std::max(limits.most, 0)), 800000u) + 8192u;
   if (gpu.list.bytes < gpu.capacity * sizeof(SplashGpu)) gpu.list = make_buffer(gpu.capacity * sizeof(SplashGpu));
   SplashCommandGpu start{};
   start.cell_groups = start.draw_groups = {SPLASH_ROW, 0u, 1u, 0u};
@@ -304,7 +313,7 @@ SplashStats splash_stats() {
   glCopyNamedBufferSubData(gpu->command.id, gpu->read_back.id, 0, 0, sizeof command);
   read_buffer(gpu->read_back, &command, sizeof command);
   return {gpu->columns, std::min(command.cell_groups.w, gpu->cell_capacity), std::min(command.draw_groups.w, gpu->capacity),
-          command.threshold.y, command.threshold.x};
+          command.threshold.z, command.threshold.w};
 }
 
 std::vector<SplashGpu> read_splashes() {

@@ -147,7 +147,7 @@ bool begin_splash(Impact i, vec3 velocity, float diameter, uint bits, bool dropl
   s.place_radius = vec4(i.place, radius * size);
   s.light_weight = vec4(0.0, 0.0, 0.0, weight * opacity);
   s.axis_age = vec4(i.normal, i.age);
-  s.drop = vec4(diameter, speed, life, 0.0);
+  s.drop = vec4(diameter, speed, life, 1e30);  // not to be thinned, unless the caller says so
   s.bits = uvec4(bits, (crown ? SPLASH_CROWN : 0u) | (film ? SPLASH_FILM : 0u) | droplets << 8u, 0u, 0u);
   return true;
 }

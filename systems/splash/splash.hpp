@@ -35,8 +35,8 @@ std::vector<SplashGlow> splash_glows(const Frame&, const std::vector<std::shared
 
 struct SplashStats {
   std::uint32_t columns = 0, cells = 0, splashes = 0;  // looked at; listed
-  float alive = 0.0f;                     // on average, all of them
-  float threshold = 0.0f;                 // importance below which they are thinned; 0: none is
+  float drawn = 0.0f;                      // of those of the field, on average
+  float estimated = 0.0f;                 // alive, by the columns: several times what is there
 };
 // Of the frame just executed; wait for the GPU.
 SplashStats splash_stats();

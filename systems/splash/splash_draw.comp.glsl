@@ -33,6 +33,14 @@ float view_of(float sine, float chance) {
   return clamp(floor(v + chance), 0.0, float(CROWN_VIEWS - 1));
 }
 
+// A splash that stands for several covers as much as they would, up to half a pixel, and beyond is so much brighter.
+// Sets drop_light; returns the optical depth of this opacity.
+float weighed_depth(SplashGpu s, float opacity) {
+  float covers = min(opacity * s.light_weight.w, max(opacity, 0.5));
+  drop_light = min(s.light_weight.rgb * (opacity * s.light_weight.w / max(covers, 1e-9)), vec3(RAIN_RADIANCE_MOST));
+  return depth_of(min(covers, 0.98));
+}
+
 void draw_crown(SplashGpu s, float exposure) {
   vec3 place = s.place_radius.xyz;
   float radius = s.place_radius.w;
@@ -56,8 +64,7 @@ void draw_crown(SplashGpu s, float exposure) {
   float lod = max(log2(float(CROWN_SIDE) / max(2.0 * half_side, 1e-3)), 0.0);
   // Before the ground that it stands on.
   float depth = frame.camera_world_m.w / max(clip.w - 1.6 * radius - 0.002 * clip.w, frame.camera_world_m.w);
-  float kept = s.light_weight.w * clear_share * (distance_fade > 0.0 ? clamp(away * distance_fade, 0.0, 1.0) : 1.0);
-  drop_light = s.light_weight.rgb;
+  float kept = clear_share * (distance_fade > 0.0 ? clamp(away * distance_fade, 0.0, 1.0) : 1.0);
   drop_bits = s.bits.x;
   if (half_side < 0.75) {
     if (lane > 0) return;
@@ -65,7 +72,7 @@ void draw_crown(SplashGpu s, float exposure) {
     float area = (edges.x * sum.g + edges.y * sum.r) * per_window * 4.0 * half_side * half_side;
     dither_state = drop_bits;
     vec2 within = vec2(dither(), dither());
-    add(ivec2(floor(centre + (within - 0.5) * 2.0 * half_side)), vec2(depth_of(min(area, 0.98)) * kept, 0.0), depth);
+    add(ivec2(floor(centre + (within - 0.5) * 2.0 * half_side)), vec2(weighed_depth(s, area * kept), 0.0), depth);
     return;
   }
   // The picture is turned by `up`: pixels of its bounding box.
@@ -81,9 +88,9 @@ void draw_crown(SplashGpu s, float exposure) {
       vec4 sum = crown_until(uv, first_layer, last, lod);
       if (first > 0.0) sum -= crown_until(uv, first_layer, first, lod);
       // Section 3.2: opacity by the Fresnel term, scaled and biased.
-      float opacity = clamp((edges.x * sum.g + edges.y * sum.r) * per_window, 0.0, 0.98);
+      float opacity = clamp((edges.x * sum.g + edges.y * sum.r) * per_window * kept, 0.0, 0.98);
       if (opacity < 1e-4) continue;
-      add(ivec2(x, y), vec2(min(depth_of(opacity) * kept, 3.9), 0.0), depth);
+      add(ivec2(x, y), vec2(weighed_depth(s, opacity), 0.0), depth);
     }
   }
 }
@@ -117,7 +124,8 @@ void draw_droplet(SplashGpu s, uint m, uint count, float exposure) {
   if (min(c0.w, c1.w) < 0.1) return;
   vec2 from = (c0.xy / c0.w * 0.5 + 0.5) * frame.size.xy, to = (c1.xy / c1.w * 0.5 + 0.5) * frame.size.xy;
   float across = droplet * frame.lens.z / c0.w;
-  float area = 0.7853982 * across * across * share * s.light_weight.w;
+  drop_light = min(s.light_weight.rgb * s.light_weight.w, vec3(RAIN_RADIANCE_MOST));
+  float area = 0.7853982 * across * across * share;
   vec2 depths = vec2(frame.camera_world_m.w) / vec2(c0.w, c1.w);
   drop_bits = random_bits(key);
   vec2 span = abs(to - from);
@@ -139,6 +147,10 @@ void main() {
   lanes = SPLASH_DRAW_LANES;
   lane = int(gl_LocalInvocationIndex % uint(SPLASH_DRAW_LANES));
   SplashGpu s = splashes[index];
+  // Thinned to what is wanted: importance that is less than even odds ask for makes it so much rarer, and brighter.
+  float odds = min(1.0, s.drop.w / max(command.threshold.y, 1e-30));
+  if (unit_float(s.bits.x * 0x85ebca6bu ^ 0x3c6ef372u) >= odds) return;
+  s.light_weight.w /= odds;
   float exposure = frame.camera_velocity_mps.w;
   if ((s.bits.y & SPLASH_CROWN) != 0u) draw_crown(s, exposure);
   uint droplets = s.bits.y >> 8u;

@@ -20,7 +20,8 @@ void consider(SplashCellGpu cell, RainLayerGpu layer, uint m) {
   float own = layer.expected.z;
   if (away > mix(0.85, 1.0, in_cell.w) * own) return;
   uint chance = random_bits(uvec4(bits, m, cell.key.x, cell.key.y));
-  float odds = odds_of(importance_of(diameter, -velocity.y, away, cell.slab.z)) ;
+  float importance = importance_of(diameter, -velocity.y, away, cell.slab.z);
+  float odds = odds_of(importance);
   if (unit_float(chance) >= odds * reach.z) return;
   Impact i;
   if (!find_impact(closed, velocity, oldest, i)) return;
@@ -38,6 +39,9 @@ void consider(SplashCellGpu cell, RainLayerGpu layer, uint m) {
     sum += lamp_light(lights[(k & 1) == 0 ? pair & 0xffffu : pair >> 16u], at, distance_to_eye);
   }
   light_splash(s, sum);
+  s.drop.w = importance / odds;
+  int bin = bin_of(s.drop.w);
+  atomicAdd(command.expected[bin >> 2][bin & 3], 256u);
   list_splash(s);
 }
 

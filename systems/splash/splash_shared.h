@@ -52,7 +52,7 @@ struct SplashGpu {
   vec4 place_radius;  // on the surface, relative to the camera, m; w: greatest radius of its crown, m
   vec4 light_weight;  // output radiance; w: multiplies optical depth
   vec4 axis_age;      // unit normal of the surface; w: age when the shutter closes, s
-  vec4 drop;          // diameter m, speed across the surface m/s, life of the crown s, brightness towards the lamps
+  vec4 drop;          // diameter m, speed across the surface m/s, life of the crown s, importance (it is thinned by)
   uvec4 bits;         // x: random, y: flags | droplets << 8
 };
 
@@ -67,8 +67,9 @@ struct SplashLandingGpu {
 struct SplashCommandGpu {
   uvec4 cell_groups;  // of splash_drops; w: cells
   uvec4 draw_groups;  // of splash_draw; w: splashes
-  vec4 threshold;     // x: importance of what is kept at even odds; y: alive, all of them, on average
-  uvec4 expected[SPLASH_BINS / 4];  // 256ths of splashes alive, by importance
+  vec4 threshold;     // importance below which they are thinned: x of those listed, y of those drawn; z: drawn, on
+                      // average; w: alive by what the columns say, more than there are
+  uvec4 expected[SPLASH_BINS / 4];  // 256ths of splashes alive, by importance: by the columns, then those listed
 };
 
 #ifdef __cplusplus
