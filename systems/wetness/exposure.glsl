@@ -11,16 +11,12 @@ float open_about(uint map, vec3 place) {
   vec3 p = (occlusion.map_from_relative[map] * vec4(place, 1.0)).xyz;
   if (any(greaterThanEqual(abs(p.xy - 0.5), vec2(0.499)))) return 1.0;
   vec4 size = occlusion.size_depth[map];
-  vec2 at = p.xy * size.x - 0.5;
-  ivec2 low = ivec2(floor(at));
-  vec4 depth = vec4(texelFetch(occlusion_depth, ivec3(low, int(map)), 0).r,
-                    texelFetch(occlusion_depth, ivec3(low + ivec2(1, 0), int(map)), 0).r,
-                    texelFetch(occlusion_depth, ivec3(low + ivec2(0, 1), int(map)), 0).r,
-                    texelFetch(occlusion_depth, ivec3(low + ivec2(1, 1), int(map)), 0).r);
+  vec2 at = p.xy * size.x - 0.5, low = floor(at);
+  vec4 depth = textureGather(occlusion_depth, vec3((low + 1.0) / size.x, float(map)));
   vec4 above = vec4(p.z) - (vec4(1.0) - depth) * size.y;  // m that a texel's surface stands above the place
   vec4 open = vec4(lessThanEqual(above, vec4(2.0 * size.z)));
-  vec2 f = at - vec2(low);
-  return mix(mix(open.x, open.y, f.x), mix(open.z, open.w, f.x), f.y);
+  vec2 f = at - low;
+  return mix(mix(open.w, open.z, f.x), mix(open.x, open.y, f.x), f.y);
 }
 
 // Metres that the map's surface stands above a place along the fall; 0 or less: it is in the open.

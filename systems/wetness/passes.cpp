@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <glm/packing.hpp>
 #include <memory>
 #include <string>
 
@@ -84,9 +85,13 @@ void wet_surfaces(PassContext& context, Buffers& buffers) {
   uniforms.flown.w = water ? 1.0f : 0.0f;
   upload(buffers.uniforms, &uniforms, sizeof uniforms);
   glBindBufferBase(GL_UNIFORM_BUFFER, WETNESS_UNIFORMS_BINDING, buffers.uniforms.id);
-  const std::vector<glm::vec4> none(1, glm::vec4(0.0f));
-  const std::vector<glm::vec4>& films = films_wanted(frame) ? frame.wetness->films : none;
-  upload(buffers.films, std::span<const glm::vec4>(films));
+  std::vector<glm::uvec2> films(1, glm::uvec2(0));
+  if (films_wanted(frame)) {
+    films.clear();
+    for (const glm::vec4& f : frame.wetness->films)
+      films.emplace_back(glm::packHalf2x16({f.x, f.y}), glm::packHalf2x16({f.z, f.w}));
+  }
+  upload(buffers.films, std::span<const glm::uvec2>(films));
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, WETNESS_FILMS_BINDING, buffers.films.id);
   const Program& program = context.program(program_name(level_of(frame), standing ? puddles : mask ? kinds : nothing));
   program.use();
@@ -97,7 +102,7 @@ void wet_surfaces(PassContext& context, Buffers& buffers) {
   context.bind_image(0, "albedo", GL_READ_WRITE);
   context.bind_image(1, "normal", GL_READ_WRITE);
   if (water) context.bind_image(2, "water", GL_WRITE_ONLY);
-  program.dispatch(context.width, context.height);
+  program.dispatch((context.width + 1) / 2, (context.height + 1) / 2);  // four pixels each
 }
 
 }  // namespace

@@ -9,7 +9,7 @@ using glm::vec4;
 #endif
 
 #define WETNESS_UNIFORMS_BINDING 26  // uniform block WetnessBlock { WetnessGpu wetness; }
-#define WETNESS_FILMS_BINDING 26     // buffer FilmBlock { vec4 films[]; }: FrameWetness::films
+#define WETNESS_FILMS_BINDING 26     // buffer FilmBlock { uvec2 films[]; }: FrameWetness::films as halves
 
 struct WetnessGpu {
   vec4 shares;      // of the rungs everywhere, sheltered, flowing; w 0
