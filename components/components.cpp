@@ -131,6 +131,7 @@ std::vector<Schema> make_schemas() {
                                           "Of the catchment's water that comes over the edge; the rest is piped away."),
            field<&DripSource::runoff_s>("runoff_s", "s", {0, 3600}, "Time constant of the water on the catchment."),
            field<&DripSource::site_spacing_mm>("site_spacing_mm", "mm", {2, 10000}, "From one hanging drop to the next."),
+           field<&DripSource::site_scatter>("site_scatter", "", {0, 1}, "How unevenly they hang, of the spacing."),
            field<&DripSource::jitter>("jitter", "", {0, 0.9}, "Of the time between drops, either way."),
            field<&DripSource::wind>("wind", "", {0, 10}, "Multiplies the wind on its drops."),
            field<&DripSource::elongation>("elongation", "", {0, 10}, "Of billboards: multiplies their stretch by motion."),

@@ -2,6 +2,7 @@
 #include <span>
 
 #include "components/light.hpp"
+#include "components/reflection.hpp"
 #include "components/techniques.hpp"
 #include "components/transform.hpp"
 #include "components/view.hpp"

@@ -64,9 +64,15 @@ int add_mark(Scene& scene, const std::string& schema, int parent, const glm::mat
 
 }  // namespace
 
-void mark_drip(Scene& scene, int parent, const glm::mat4& frame, float length_m, float catchment_m, float lip_mm) {
-  add_mark(scene, "drip_source", parent, frame,
-           {{"length_m", length_m}, {"catchment_depth_m", catchment_m}, {"lip_radius_mm", lip_mm}});
+void mark_drip(Scene& scene, int parent, const glm::mat4& frame, float length_m, float catchment_m, float lip_mm,
+               DripMark mark) {
+  nlohmann::json values = {{"length_m", length_m}, {"catchment_depth_m", catchment_m}, {"lip_radius_mm", lip_mm}};
+  if (mark.edge_share != 1.0f) values["edge_share"] = mark.edge_share;
+  if (mark.sites > 0) {
+    values["site_spacing_mm"] = 1000.0f * length_m / static_cast<float>(mark.sites);
+    values["site_scatter"] = 0.0f;
+  }
+  add_mark(scene, "drip_source", parent, frame, values);
 }
 
 void mark_pane(Scene& scene, int parent, const glm::mat4& frame, glm::vec2 size_m) {

@@ -24,7 +24,14 @@ struct Lamp {
 int add_light(Scene&, const std::string& name, int parent, glm::vec3 position, const Lamp&,
               glm::vec3 direction = {0, -1, 0});
 // Marks: a line along the frame's x, or a rectangle in its x and y (pane) or x and z (puddle), centred.
-void mark_drip(Scene&, int parent, const glm::mat4& frame, float length_m, float catchment_m, float lip_mm);
+struct DripMark {
+  float edge_share = 1.0f;  // of the catchment's water: gutters leak little
+  int sites = 0;            // evenly spaced, as the tips of a valance are; 0: as under an even edge
+};
+void mark_drip(Scene&, int parent, const glm::mat4& frame, float length_m, float catchment_m, float lip_mm,
+               DripMark = {});
+// Of an awning of that length (shops.cpp): a tip each.
+int awning_stripes(float length_m);
 void mark_pane(Scene&, int parent, const glm::mat4& frame, glm::vec2 size_m);
 // The object of a node mirrors its own surroundings, as captured at a place along the node's axes.
 void mark_probe(Scene&, int node, glm::vec3 centre_m, float radius_m);

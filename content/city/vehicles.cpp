@@ -68,7 +68,8 @@ void add_vehicles(Scene& scene) {
     const float y = carriageway_height_m(p.x, p.y);
     const glm::mat4 frame =
         glm::rotate(glm::translate(glm::mat4(1.0f), {p.x, y - 0.01f, p.y}), heading, glm::vec3(0, 1, 0));
-    add_node(scene, name, parent, k.mesh, frame);
+    const int node = add_node(scene, name, parent, k.mesh, frame);
+    mark_probe(scene, node, {0.0f, 0.5f * k.shape.height_m, 0.0f}, 0.56f * k.shape.length_m);
     return frame;
   };
   constexpr float north = 3.14159265f;

@@ -17,7 +17,8 @@ local resources = {
   water_mask = { format = "rg8" },
   water      = { format = "rg16f" },             -- mm of standing water, mm of film
   puddle_list = { format = "none" },
-  ripples    = { format = "rgba16f", width = 256, height = 256, layers = 3, persistent = true },  -- shared, near, drips
+  ripples    = { format = "rgba16f", width = 256, height = 256, layers = 3, mips = 2,
+                 persistent = true },                      -- of the shared tile, of the near one, of drips
   overhead   = { format = "rgba16f", width = 128, height = 128, persistent = true },  -- light from above, for splashes
   mirrors    = { format = "rgba16f", scale = 1 / 2, layers = 2, mips = 6 },
   probes     = { format = "rgba16f", width = 448, height = 65, layers = 4, persistent = true },
@@ -52,7 +53,7 @@ local passes = {
 
   -- Films of water and puddles, laid over the G-buffer.
   { pass = "puddles", puddle_list = "puddle_list" },
-  { pass = "ripples", ripples = "ripples" },
+  { pass = "ripples", ripples = "ripples", parameters = { software_level = 1 } },
   { pass = "wet_surfaces", depth = "depth", albedo = "albedo", normal = "normal", water_mask = "water_mask",
     occlusion_map = "occlusion_map", ripples = "ripples", puddle_list = "puddle_list", water = "water" },
 

@@ -7,6 +7,9 @@
 #ifdef ENVIRONMENT
 #include "systems/lighting/environment.glsl"
 #endif
+#ifdef MIRRORS
+#include "systems/mirror/mirror.glsl"
+#endif
 
 const float PI = 3.14159265;
 
@@ -77,7 +80,15 @@ void main() {
   float cover = clamp(colour.a, 0.0, 1.0);
   float matters = cover * max(s.albedo.r, max(s.albedo.g, s.albedo.b));
   vec3 film = s.albedo / PI * film_illuminance(vertex_position, normal, matters) + s.emissive;
-  vec3 sky = surroundings(reflect(-view, normal), s.roughness);
+  vec3 mirrored = reflect(-view, normal);
+  vec3 sky = surroundings(mirrored, s.roughness);
+#ifdef MIRRORS
+  float applies = mirror_applies(1, vertex_position, normal);
+  if (applies > 0.0) {
+    vec4 seen = mirror_lobe(1, vertex_position, mirrored, s.roughness);
+    sky = mix(sky, seen.rgb, seen.a * applies);
+  }
+#endif
 
   // Mist between here and the pane hides what the pane does.
   float clear = exp(-distance_m * (frame.mist.x + frame.rain.z));

@@ -6,6 +6,7 @@
 
 #include "systems/frame.hpp"
 #include "systems/gpu_scene.hpp"
+#include "systems/mirror_frame.hpp"
 
 namespace petrichor {
 namespace {
@@ -64,7 +65,11 @@ void draw_glass(PassContext& context) {
   // The environment is captured by lighting; without it the sky's gradient stands in.
   const bool environment = context.has("environment");
   if (environment) context.bind_texture(7, "environment");
-  context.program(environment ? "glass_environment" : "glass_sky").use();
+  // Panes on the plane that pass "mirrors" drew show its picture.
+  const bool mirrors = context.has("mirrors") && context.frame.mirrors && context.frame.mirrors->pane;
+  if (mirrors) context.bind_texture(9, "mirrors");
+  const char* const sky = mirrors ? "glass_sky_mirrors" : "glass_sky";
+  context.program(!environment ? sky : mirrors ? "glass_environment_mirrors" : "glass_environment").use();
   draw_instances(*context.frame.scene, context.frame, context.frame.uniforms.view_projection, DrawWhat::blended);
 }
 
@@ -87,10 +92,15 @@ std::vector<PassOffer> geometry_passes() {
   offers.push_back(
       {"glass",
        "thin panes over the lit picture: the sky's reflection, tint",
-       {{"colour", SlotAccess::modify}, {"depth", SlotAccess::read}, {"environment", SlotAccess::read, true}},
+       {{"colour", SlotAccess::modify},
+        {"depth", SlotAccess::read},
+        {"environment", SlotAccess::read, true},
+        {"mirrors", SlotAccess::read, true}},
        {},
        {{"glass_sky", {glass_files, {"MATERIAL_VARIANT 16"}}},
-        {"glass_environment", {glass_files, {"MATERIAL_VARIANT 16", "ENVIRONMENT"}}}},
+        {"glass_environment", {glass_files, {"MATERIAL_VARIANT 16", "ENVIRONMENT"}}},
+        {"glass_sky_mirrors", {glass_files, {"MATERIAL_VARIANT 16", "MIRRORS"}}},
+        {"glass_environment_mirrors", {glass_files, {"MATERIAL_VARIANT 16", "ENVIRONMENT", "MIRRORS"}}}},
        [](const Frame& frame) { return frame.scene && has_blended(*frame.scene, frame); },
        draw_glass});
   return offers;

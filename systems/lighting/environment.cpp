@@ -7,114 +7,12 @@
 #include "systems/frame_gpu.hpp"
 #include "systems/gpu_scene.hpp"
 #include "systems/lighting/chosen_lights.hpp"
-#include "systems/lighting/cube_faces.hpp"
 
 namespace petrichor {
 namespace {
 
-constexpr float quarter_turn = 1.57079632679f;
-constexpr float capture_near_m = 0.1f;
 constexpr float eye_level_m = 2.0f;  // of the lowest storey of the grid
 constexpr std::size_t most_probes = 12;
-
-void make_targets(EnvironmentProbe& probe) {
-  const int width = 6 * ENVIRONMENT_FACE, height = ENVIRONMENT_FACE;
-  probe.depth = make_texture_2d(width, height, GL_DEPTH_COMPONENT32F);
-  probe.albedo = make_texture_2d(width, height, GL_RGBA8);
-  probe.normal = make_texture_2d(width, height, GL_RGBA16);
-  probe.emissive = make_texture_2d(width, height, GL_R11F_G11F_B10F);
-  probe.radiance = make_texture_2d(width, height, GL_RGBA16F);
-  probe.environment = make_texture_2d(ENVIRONMENT_WIDTH, ENVIRONMENT_HEIGHT, GL_RGBA16F);
-  clear_texture(probe.environment);
-  const std::array<GLuint, 3> colours{probe.albedo.id, probe.normal.id, probe.emissive.id};
-  probe.framebuffer = make_framebuffer(colours, probe.depth.id);
-}
-
-// A frame's constants of our own while the scope lasts.
-struct BorrowedBlock {
-  explicit BorrowedBlock(GLuint binding) : binding_(binding) {
-    GLint64 value = 0;
-    GLint id = 0;
-    glGetIntegeri_v(GL_UNIFORM_BUFFER_BINDING, binding, &id);
-    id_ = static_cast<GLuint>(id);
-    glGetInteger64i_v(GL_UNIFORM_BUFFER_START, binding, &value);
-    start_ = static_cast<GLintptr>(value);
-    glGetInteger64i_v(GL_UNIFORM_BUFFER_SIZE, binding, &value);
-    size_ = static_cast<GLsizeiptr>(value);
-  }
-  ~BorrowedBlock() {
-    if (id_ && size_ > 0) {
-      glBindBufferRange(GL_UNIFORM_BUFFER, binding_, id_, start_, size_);
-    } else {
-      glBindBufferBase(GL_UNIFORM_BUFFER, binding_, id_);
-    }
-  }
-  GLuint binding_, id_ = 0;
-  GLintptr start_ = 0;
-  GLsizeiptr size_ = 0;
-};
-
-void capture(Environment& environment, EnvironmentProbe& probe, Frame& around, const Program& surfaces) {
-  const BorrowedBlock constants(FRAME_UNIFORMS_BINDING);
-  glBindFramebuffer(GL_FRAMEBUFFER, probe.framebuffer);
-  glEnable(GL_DEPTH_TEST);
-  glDepthFunc(GL_GREATER);
-  glDepthMask(GL_TRUE);
-  glDisable(GL_BLEND);
-  const float zero[4] = {0, 0, 0, 0};
-  glClearNamedFramebufferfv(probe.framebuffer, GL_DEPTH, 0, zero);
-  for (GLint i = 0; i < 3; ++i) glClearNamedFramebufferfv(probe.framebuffer, GL_COLOR, i, zero);
-  if (around.scene) {
-    upload_instances(*around.scene, around);
-    surfaces.use();
-    for (int face = 0; face < 6; ++face) {
-      around.camera.orientation = cube_face_orientation(face);
-      finish_frame(around);
-      // Each draw reads its own constants: a buffer that a former draw still reads may not be overwritten.
-      environment.uniforms = make_buffer(sizeof(FrameUniforms), &around.uniforms);
-      glBindBufferRange(GL_UNIFORM_BUFFER, FRAME_UNIFORMS_BINDING, environment.uniforms.id, 0, sizeof(FrameUniforms));
-      glViewport(face * ENVIRONMENT_FACE, 0, ENVIRONMENT_FACE, ENVIRONMENT_FACE);
-      draw_instances(*around.scene, around, around.uniforms.view_projection, DrawWhat::opaque);
-    }
-  }
-  glDisable(GL_DEPTH_TEST);
-  glDisable(GL_CULL_FACE);
-  glBindFramebuffer(GL_FRAMEBUFFER, 0);
-  probe.captured = true;
-  probe.lit = false;
-  ++environment.captures;
-}
-
-void light_probe(Environment& environment, EnvironmentProbe& probe, const Frame& around,
-                 std::span<const int> shadow_slots, const Texture* shadow_atlas, const EnvironmentPrograms& programs) {
-  const BorrowedBlock lights(CHOSEN_LIGHTS_BINDING);
-  const ChosenLights chosen = choose_lights(around, shadow_slots);
-  environment.lights = make_buffer(sizeof chosen, &chosen);
-  glBindBufferBase(GL_UNIFORM_BUFFER, CHOSEN_LIGHTS_BINDING, environment.lights.id);
-
-  glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
-  const GLuint inputs[] = {probe.depth.id, probe.albedo.id, probe.normal.id, probe.emissive.id};
-  glBindTextures(0, 4, inputs);
-  if (shadow_atlas) glBindTextureUnit(6, shadow_atlas->id);
-  glBindImageTexture(0, probe.radiance.id, 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RGBA16F);
-  programs.light.use();
-  programs.light.set("near_m", capture_near_m);
-  programs.light.dispatch(6 * ENVIRONMENT_FACE, ENVIRONMENT_FACE);
-  glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
-
-  glBindTextureUnit(0, probe.radiance.id);
-  glBindImageTexture(0, probe.environment.id, 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RGBA16F);
-  programs.filter.use();
-  programs.filter.dispatch(ENVIRONMENT_LEVELS * ENVIRONMENT_TILE, ENVIRONMENT_TILE);
-  programs.harmonics.use();
-  glDispatchCompute(9, 1, 1);
-  glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
-  glBindImageTexture(0, probe.environment.id, 0, GL_FALSE, 0, GL_READ_WRITE, GL_RGBA16F);
-  programs.diffuse.use();
-  programs.diffuse.dispatch(ENVIRONMENT_TILE, ENVIRONMENT_TILE);
-  glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
-  probe.lit = true;
-}
 
 EnvironmentProbe& find_probe(Environment& environment, const glm::ivec3& cell) {
   auto& probes = environment.probes;
@@ -122,7 +20,7 @@ EnvironmentProbe& find_probe(Environment& environment, const glm::ivec3& cell) {
   if (found == probes.end()) {
     if (probes.size() < most_probes) {
       probes.emplace_back();
-      make_targets(probes.back());
+      make_probe_targets(probes.back());
       found = probes.end() - 1;
     } else {
       found = std::min_element(probes.begin(), probes.end(),
@@ -178,20 +76,17 @@ void update_environment(Environment& environment, const Frame& frame, float spac
     EnvironmentProbe& probe = find_probe(environment, corners[i].cell);
     if (!probe.captured || !probe.lit || probe.lighting != lighting) {
       if (around.width == 0) {
-        around.scene = frame.scene;
+        around = frame_around(frame);
         around.instances = frame.instances;
-        around.lights = frame.lights;
-        around.sky = frame.sky;
-        around.width = around.height = ENVIRONMENT_FACE;
-        around.camera.vertical_fov_rad = quarter_turn;
-        around.camera.near_m = capture_near_m;
       }
       around.camera.position_m = environment_place_m(corners[i].cell, spacing_m);
       if (!probe.captured) {
-        capture(environment, probe, around, programs.surfaces);
+        capture_faces(probe, around, programs.surfaces);
+        ++environment.captures;
         moved_instances = true;
       }
-      light_probe(environment, probe, around, shadow_slots, shadow_atlas, programs);
+      light_faces(probe, around, shadow_slots, shadow_atlas, programs.light, environment.lights);
+      filter_faces(probe, programs);
       probe.lighting = lighting;
     }
     textures[i] = probe.environment.id;

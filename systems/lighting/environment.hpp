@@ -7,22 +7,10 @@
 #include <vector>
 
 #include "engine/gpu/objects.hpp"
-#include "engine/gpu/shader.hpp"
 #include "systems/frame.hpp"
-#include "systems/lighting/lighting_shared.h"
+#include "systems/lighting/capture.hpp"
 
 namespace petrichor {
-
-// A place's six views as a small G-buffer, and what their light adds up to. Each depends on the place, the scene and
-// the lights alone, never on the frames before; so a picture does not depend on the way the camera came.
-struct EnvironmentProbe {
-  glm::ivec3 cell{0};
-  std::uint64_t last_used = 0;
-  bool captured = false, lit = false;
-  std::uint64_t lighting = 0;  // lighting_hash it is lit for
-  Texture depth, albedo, normal, emissive, radiance, environment;
-  Framebuffer framebuffer;
-};
 
 struct EnvironmentCorner {
   glm::ivec3 cell;
@@ -36,21 +24,12 @@ struct Environment {
   bool shadows = false;
   std::uint64_t clock = 0;     // for the choice of the probe to drop; no picture depends on it
   std::uint64_t captures = 0;  // since start
-  Buffer uniforms, lights;
+  Buffer lights;
 };
 
 // The one to four grid places round a camera position and their shares, which sum to 1. Near a place it has all.
 std::vector<EnvironmentCorner> environment_corners(const glm::dvec3& camera_m, float spacing_m);
 glm::dvec3 environment_place_m(const glm::ivec3& cell, float spacing_m);
-
-struct EnvironmentPrograms {
-  const Program& surfaces;  // the G-buffer's, for all materials
-  const Program& light;
-  const Program& filter;
-  const Program& harmonics;
-  const Program& diffuse;
-  const Program& blend;
-};
 
 // Writes `target` (rgba16f, ENVIRONMENT_WIDTH x ENVIRONMENT_HEIGHT). shadow_atlas may be null; shadow_slots as for
 // choose_lights.

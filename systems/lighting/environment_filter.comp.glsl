@@ -1,6 +1,6 @@
 #version 450 core
 // Radiance on six faces -> octahedral tiles, each the mean over a GGX lobe wider than the last (split sum with
-// n = v, Karis 2013), by a fixed spiral of directions.
+// n = v, Karis 2013), by a fixed spiral of directions. Alpha (1 / distance) is filtered likewise.
 #include "systems/lighting/lighting_shared.h"
 #include "systems/lighting/octahedral.glsl"
 
@@ -8,12 +8,12 @@ layout(local_size_x = 8, local_size_y = 8) in;
 layout(binding = 0) uniform sampler2D radiance;
 layout(binding = 0, rgba16f) uniform writeonly image2D environment;
 
-vec3 radiance_along(vec3 direction) {
+vec4 radiance_along(vec3 direction) {
   vec3 place = face_from_direction(direction);
   // Half a texel inside the face, so that filtering takes nothing from its neighbour in the strip.
   vec2 texel = clamp(place.xy * float(ENVIRONMENT_FACE), 0.5, float(ENVIRONMENT_FACE) - 0.5);
   return textureLod(radiance, (texel + vec2(place.z * float(ENVIRONMENT_FACE), 0.0)) /
-                                  vec2(6 * ENVIRONMENT_FACE, ENVIRONMENT_FACE), 0.0).rgb;
+                                  vec2(6 * ENVIRONMENT_FACE, ENVIRONMENT_FACE), 0.0);
 }
 
 void main() {
@@ -28,7 +28,7 @@ void main() {
   vec3 side = normalize(cross(abs(n.y) < 0.9 ? vec3(0.0, 1.0, 0.0) : vec3(1.0, 0.0, 0.0), n));
   vec3 up = cross(n, side);
 
-  vec3 sum = vec3(0.0);
+  vec4 sum = vec4(0.0);
   float weights = 0.0;
   int samples = level == 0 ? 1 : 32;
   for (int i = 0; i < samples; ++i) {
@@ -43,5 +43,5 @@ void main() {
     sum += radiance_along(l) * weight;
     weights += weight;
   }
-  imageStore(environment, texel, vec4(sum / max(weights, 1e-4), 1.0));
+  imageStore(environment, texel, sum / max(weights, 1e-4));
 }

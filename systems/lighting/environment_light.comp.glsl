@@ -1,5 +1,6 @@
 #version 450 core
-// Lights one captured view of the surroundings: six small G-buffers side by side become radiance.
+// Lights one captured view of the surroundings: six small G-buffers side by side become radiance, with 1 / distance of
+// what is seen, 1/m, in its alpha (0: the sky).
 #define BRIGHTEST_CAPTURED_CD_M2 30.0
 #include "systems/lighting/brdf.h"
 #include "systems/lighting/lighting_shared.h"
@@ -44,5 +45,5 @@ void main() {
   // lit window, or each lamp would light the street twice.
   vec3 lit = surface.albedo * irradiance / PI + min(surface.emissive, vec3(BRIGHTEST_CAPTURED_CD_M2));
   vec3 result = depth > 0.0 ? lit : sky_radiance(normalize(axial));
-  imageStore(radiance, texel, vec4(min(result, vec3(6e4)), 1.0));
+  imageStore(radiance, texel, vec4(min(result, vec3(6e4)), depth > 0.0 ? 1.0 / length(place) : 0.0));
 }

@@ -5,6 +5,7 @@
 #include "systems/gpu_scene.hpp"
 #include "systems/lighting/chosen_lights.hpp"
 #include "systems/lighting/state.hpp"
+#include "systems/mirror_frame.hpp"
 
 namespace petrichor {
 namespace {
@@ -79,6 +80,36 @@ PassOffer environment(State state) {
           }};
 }
 
+PassOffer probes(State state) {
+  return {"probes",
+          "cube maps about moving objects: what they mirror",
+          {{"probes", SlotAccess::write}, {"shadow_atlas", SlotAccess::read, true}},
+          {{"step_m", 1.0}},  // of the grid of places that captures are made at
+          {{"surfaces",
+            {{"systems/geometry/gbuffer.vert.glsl", "systems/geometry/gbuffer.frag.glsl"},
+             {"MATERIAL_VARIANT " + std::to_string(static_cast<unsigned>(variant_general))}}},
+           {"light", {{"systems/lighting/environment_light.comp.glsl"}, {}}},
+           {"light_shadows", {{"systems/lighting/environment_light.comp.glsl"}, {"SHADOWS"}}},
+           {"filter", {{"systems/lighting/environment_filter.comp.glsl"}, {}}},
+           {"blend", {{"systems/lighting/probe_blend.comp.glsl"}, {}}}},
+          [](const Frame& frame) {
+            if (!frame.scene || !frame.mirrors || frame.techniques.share(Effect::probes, ProbeRung::moving) <= 0.0f)
+              return false;
+            for (const FrameMirrors::Probe& probe : frame.mirrors->probes)
+              if (probe.coverage > 0.0f) return true;
+            return false;
+          },
+          [state](PassContext& context) {
+            const bool shadows = context.has("shadow_atlas");
+            const ProbePrograms programs{context.program("surfaces"),
+                                         context.program(shadows ? "light_shadows" : "light"),
+                                         context.program("filter"), context.program("blend")};
+            update_probes(state->probes, context.frame, context.parameter("step_m"),
+                          shadows ? &context.texture("shadow_atlas") : nullptr, shadow_slots(*state, context), programs,
+                          context.texture("probes"));
+          }};
+}
+
 PassOffer light_lists(State state) {
   return {"light_lists",
           "which lights matter in each tile of 8x8 pixels",
@@ -123,10 +154,17 @@ void shade_tiles(const LightingState& state, PassContext& context) {
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, TILES_BINDING, state.tiles.id);
   glBindBuffer(GL_DISPATCH_INDIRECT_BUFFER, state.tiles.id);
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT);
+  // The impostors of these rungs are the lamps, too; nothing may shine twice.
+  const Techniques& by = context.frame.techniques;
+  const float lamps_elsewhere = context.has("highlights")
+                                    ? by.share(Effect::reflections, ReflectionRung::toyshop) +
+                                          by.share(Effect::reflections, ReflectionRung::impostors)
+                                    : 0.0f;
   const auto shade = [&](unsigned kind, std::string_view program_name) {
     const Program& program = context.program(program_name);
     program.use();
     program.set("diffuse_gain", context.parameter("diffuse_gain"));
+    program.set("lamps_elsewhere", lamps_elsewhere);
     program.set("list_start", TILES_HEADER + kind * state.list_length);
     glDispatchComputeIndirect(static_cast<GLintptr>(kind * 4 * sizeof(unsigned)));
   };
@@ -147,6 +185,7 @@ PassOffer shade(State state) {
            {"light_lists", SlotAccess::read},
            {"shadow_atlas", SlotAccess::read, true},
            {"environment", SlotAccess::read, true},
+           {"highlights", SlotAccess::write, true},  // of lamps: connected where pass reflections may take them over
            {"colour", SlotAccess::write}},
           {{"diffuse_gain", 1.0}},
           {{"sky", {files, {"SKY"}}},
@@ -165,6 +204,7 @@ std::vector<PassOffer> lighting_passes(std::shared_ptr<LightingState> state) {
   std::vector<PassOffer> offers;
   offers.push_back(shadow_maps(state));
   offers.push_back(environment(state));
+  offers.push_back(probes(state));
   offers.push_back(light_lists(state));
   offers.push_back(shade(state));
   return offers;

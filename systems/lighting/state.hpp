@@ -3,6 +3,7 @@
 
 #include "engine/gpu/objects.hpp"
 #include "systems/lighting/environment.hpp"
+#include "systems/lighting/probes.hpp"
 #include "systems/lighting/shadow_maps.hpp"
 
 namespace petrichor {
@@ -10,6 +11,7 @@ namespace petrichor {
 struct LightingState {
   ShadowMaps shadows;
   Environment environment;
+  Probes probes;
   Buffer chosen_lights;
   Buffer tiles;              // TILES_BINDING
   unsigned list_length = 0;  // tiles that each of its lists can hold
