@@ -56,6 +56,9 @@ WETNESS_FN float drowned_share(float film_m, float relief_m) {
 // stone: 0.08 mm; 0.2, glazed tile: 5 um).
 WETNESS_FN float relief_m(float roughness) { return 0.6e-3f * roughness * roughness * roughness; }
 
+// Deviation of the relief of normal maps (bumps of stone, pores of asphalt): a guess.
+const float MAPPED_RELIEF_M = 0.8e-3f;
+
 // Lagarde's guess of how porous a dielectric is: saturate(((1 - gloss) - 0.5) / 0.4).
 WETNESS_FN float porosity_of_roughness(float roughness) { return clamp((roughness - 0.5f) / 0.4f, 0.0f, 1.0f); }
 

@@ -82,6 +82,7 @@ Wet wet_of(vec4 row, float slope) {
 struct Place {
   vec3 at;  // m relative to the camera
   vec3 plane;
+  bool planar;
   float exposed;
   vec4 film;  // of the table
 };
@@ -136,7 +137,7 @@ vec2 wet_pixel(ivec2 texel, float depth, OF_PLACE) {
   vec3 plane = s.normal;
   Wet w = Wet(wetness.open_film.x * 1e-3, wetness.open_film.y);
 #elif LEVEL >= 2
-  vec3 plane = shared_place.plane;
+  vec3 plane = shared_place.planar ? shared_place.plane : s.normal;
   float e = shared_place.exposed;
   float slope = sqrt(max(1.0 - plane.y * plane.y, 0.0));
   Wet w = wet_of(shared_place.film, slope);
@@ -183,7 +184,9 @@ vec2 wet_pixel(ivec2 texel, float depth, OF_PLACE) {
   float ruffled = film_slope_rms(wetness.open_film.w, w.film_m * max(plane.y, 0.0));
   float film_roughness = sqrt(sqrt(1.6e-5 + 2.0 * ruffled * ruffled));
   s.roughness = mix(roughness * (1.0 - 0.25 * wetted), min(film_roughness, roughness), drowned);
-  s.normal = normalize(mix(s.normal, film_normal, drowned));
+  // What a normal map shows is coarser than roughness: bumps of a millimetre, which the film follows until they drown.
+  float flattened = drowned_share(w.film_m, relief_m(roughness) + MAPPED_RELIEF_M) * takes * strength;
+  s.normal = normalize(mix(s.normal, film_normal, flattened));
   water_mm.y = film_m * 1e3 * strength;
 #if LEVEL == 1
   if (wetness.open_film.z > 0.5) {  // as published
@@ -246,7 +249,9 @@ void main() {
     vec2 pixel = planar ? vec2(corner) + 1.0 : vec2(texels[first]) + 0.5;
     Place near = place_at(texels[first], pixel, planar ? 0.25 * dot(depth, vec4(1.0)) : nearest, slope, planar);
     Place far = near;
-    for (int again = 0; again < (planar || farthest <= 0.0 ? 0 : 1); ++again) {
+    // What lies close behind is seen through a seam of the mesh, or joins it at a crease: it is as wet.
+    bool apart = !planar && farthest < 0.9 * nearest;
+    for (int again = 0; again < (apart && farthest > 0.0 ? 1 : 0); ++again) {
       int other = depth.x == farthest ? 0 : depth.y == farthest ? 1 : depth.z == farthest ? 2 : 3;
       far = place_at(texels[other], vec2(texels[other]) + 0.5, farthest, slope, false);
     }
@@ -256,7 +261,8 @@ void main() {
       if (depth[i] <= 0.0) continue;
 #if LEVEL >= 2
       Place own = near;
-      if (depth[i] < middle && !planar) own = far;
+      if (depth[i] < middle && apart) own = far;
+      own.planar = planar;
       water[i] = wet_pixel(texels[i], depth[i], own);
 #else
       water[i] = wet_pixel(texels[i], depth[i], 0.0);
