@@ -12,6 +12,8 @@
 #include "systems/mirror/mirror.hpp"
 #include "systems/occlusion/chart.hpp"
 #include "systems/occlusion/occlusion.hpp"
+#include "systems/occlusion/rays.hpp"
+#include "systems/occlusion/street.hpp"
 #include "systems/puddle/puddle.hpp"
 #include "systems/rainfall/chart.hpp"
 #include "systems/rainfall/class_chart.hpp"
@@ -33,6 +35,7 @@
 #include "systems/splash/splash.hpp"
 #include "systems/splatter/splatter.hpp"
 #include "systems/walker/walk.hpp"
+#include "systems/wetness/chart.hpp"
 #include "systems/wetness/wetness.hpp"
 
 namespace petrichor {
@@ -307,6 +310,19 @@ Result<void> chart_shelter(const ChartRun& run) {
   return chart_occlusion(run, rain_of_emitter);
 }
 
+Result<void> chart_wet(const ChartRun& run) {
+  WetTruth truth;
+  truth.passes = all_passes();
+  truth.street = shelter_street();
+  truth.rays = [](std::span<const Model* const> models, std::span<const FrameInstance> instances) {
+    auto rays = std::make_shared<ShelterRays>(models, instances);
+    return WetTruth::Sheltered([rays](const glm::vec3& place_m, const glm::vec3& velocity_mps) {
+      return rays->sheltered(place_m, velocity_mps);
+    });
+  };
+  return chart_wetness(run, truth);
+}
+
 }  // namespace
 
 std::vector<ChartOffer> all_charts() {
@@ -322,7 +338,7 @@ std::vector<ChartOffer> all_charts() {
       {"drips", "drops that fall from edges", chart_drips},
       {"ripples", "rings on water, against the spectral solution", chart_ripples},
       {"puddles", "standing water, against a fine balance", chart_puddles},
-      {"wetness", "films of water on surfaces, against rays", chart_wetness},
+      {"wetness", "films of water on surfaces, against rays", chart_wet},
       {"reflections", "what wet ground mirrors, against rays",
        [](const ChartRun& run) { return chart_reflections(run, all_passes); }},
       {"near_drops", "drops near the eye, by maps and by closed form, against traced ones", chart_near_drops},

@@ -5,19 +5,29 @@
 #define SYSTEMS_WETNESS_EXPOSURE_GLSL
 #include "systems/occlusion/occlusion.glsl"
 
-// Share of the four texels about a place that do not shelter it, weighted by how near they are. Their bias is twice a
-// texel's own, because they reach twice as far.
-float open_about(uint map, vec3 place) {
-  vec3 p = (occlusion.map_from_relative[map] * vec4(place, 1.0)).xyz;
-  if (any(greaterThanEqual(abs(p.xy - 0.5), vec2(0.499)))) return 1.0;
-  vec4 size = occlusion.size_depth[map];
-  vec2 at = p.xy * size.x - 0.5, low = floor(at);
-  vec4 depth = textureGather(occlusion_depth, vec3((low + 1.0) / size.x, float(map)));
+// Share of the four texels about a place on a map that do not shelter it, weighted by how near they are. p: texels, and
+// metres along the fall. Their bias is twice a texel's own, because they reach twice as far. Texels, not a gather: that
+// costs software OpenGL ten times as much.
+float open_on_map(uint map, vec3 p, vec3 size) {
+  vec2 low = floor(p.xy);
+  ivec3 at = ivec3(ivec2(low), int(map));
+  vec4 depth = vec4(texelFetch(occlusion_depth, at, 0).r, texelFetch(occlusion_depth, at + ivec3(1, 0, 0), 0).r,
+                    texelFetch(occlusion_depth, at + ivec3(0, 1, 0), 0).r,
+                    texelFetch(occlusion_depth, at + ivec3(1, 1, 0), 0).r);
   vec4 above = vec4(p.z) - (vec4(1.0) - depth) * size.y;  // m that a texel's surface stands above the place
   vec4 open = vec4(lessThanEqual(above, vec4(2.0 * size.z)));
-  vec2 f = at - low;
-  return mix(mix(open.w, open.z, f.x), mix(open.x, open.y, f.x), f.y);
+  vec2 f = p.xy - low;
+  return mix(mix(open.x, open.y, f.x), mix(open.z, open.w, f.x), f.y);
 }
+
+// Texels and metres along the fall of a place; outside the map nothing shelters.
+vec3 on_map(uint map, vec3 place) {
+  vec3 p = (occlusion.map_from_relative[map] * vec4(place, 1.0)).xyz;
+  float texels = occlusion.size_depth[map].x;
+  return vec3(clamp(p.xy, vec2(0.002), vec2(0.998)) * texels - 0.5, p.z);
+}
+
+float open_about(uint map, vec3 place) { return open_on_map(map, on_map(map, place), occlusion.size_depth[map].xyz); }
 
 // Metres that the map's surface stands above a place along the fall; 0 or less: it is in the open.
 float covered_m(uint map, vec3 place) {
@@ -48,7 +58,9 @@ float exposure_by(uint map, vec3 place, vec3 normal, vec3 spread) {
     open = 0.0;
     // A Gaussian by seven points, each as wide as a texel.
     const float weights[4] = float[4](0.2707, 0.2166, 0.1109, 0.0372);
-    for (int k = -3; k <= 3; ++k) open += weights[abs(k)] * open_about(map, off + width * (0.667 * float(k)));
+    vec3 middle = on_map(map, off), step_p = (on_map(map, off + width) - middle) * 0.667;
+    vec3 size = occlusion.size_depth[map].xyz;
+    for (int k = -3; k <= 3; ++k) open += weights[abs(k)] * open_on_map(map, middle + step_p * float(k), size);
   }
   return caught * open;
 }

@@ -6,7 +6,6 @@
 
 #include "engine/ecs/registry.hpp"
 #include "engine/graph/graph.hpp"
-#include "systems/chart.hpp"
 #include "systems/frame.hpp"
 #include "systems/ladder.hpp"
 
@@ -26,7 +25,6 @@ void simulate_wetness(Registry&, double time_s, double step_s);
 void extract_wetness(const Registry&, Frame&, double time_s);
 std::shared_ptr<const FrameWetness> make_frame_wetness(const WetnessHistory&, const WetGround&, double time_s);
 
-Result<void> chart_wetness(const ChartRun&);
 Ladder wetness_ladder();
 
 }  // namespace petrichor
