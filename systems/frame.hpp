@@ -27,6 +27,7 @@ struct FrameRipples;
 struct FramePuddles;
 struct FrameWetness;
 struct FrameMirrors;
+struct FrameReflectors;
 
 struct FrameCamera {
   glm::dvec3 position_m{0.0};  // world
@@ -97,6 +98,7 @@ struct Frame {
   std::shared_ptr<const FramePuddles> puddles;
   std::shared_ptr<const FrameWetness> wetness;
   std::shared_ptr<const FrameMirrors> mirrors;
+  std::shared_ptr<const FrameReflectors> reflectors;
   std::int32_t affordable_drops = 4000000;  // for an emitter that names no budget of its own
   GpuScene* scene = nullptr;
   FrameUniforms uniforms{};  // filled last, by finish_frame (systems/frame_gpu.hpp)

@@ -18,11 +18,15 @@
 #include "engine/main/renderer.hpp"
 #include "engine/main/world.hpp"
 #include "engine/script/reference.hpp"
+#include "systems/drip/chart.hpp"
 #include "systems/rainfall/bench.hpp"
 #include "systems/rainfall/bench_rungs.hpp"
 #include "systems/rainfall/measure.hpp"
 #include "systems/rainfall/near_drops/near_chart.hpp"
 #include "systems/rainfall/sprites/bench.hpp"
+#include "systems/splatter/bench.hpp"
+#include "systems/ripple/bench.hpp"
+#include "systems/reflection/reflection.hpp"
 
 namespace petrichor {
 namespace {
@@ -67,7 +71,7 @@ Result<std::vector<std::string>> pick(const std::vector<std::string>& asked, con
 }  // namespace
 
 Result<void> bench(const BenchOptions& options) {
-  const auto names = pick(options.names, {"ecs", "rain", "rungs", "near_drops", "tariq"}, "benchmark");
+  const auto names = pick(options.names, {"ecs", "rain", "rungs", "near_drops", "drips", "reflections", "ripples", "tariq", "halos"}, "benchmark");
   if (!names) return tl::unexpected(names.error());
   std::vector<BenchRow> rows;
   for (const std::string& name : *names) {
@@ -78,8 +82,13 @@ Result<void> bench(const BenchOptions& options) {
       if (!renderer) return tl::unexpected(renderer.error());
       log_info("{}", (*renderer)->device.renderer);
       const bool software = (*renderer)->device.software;
-      auto measured = name == "tariq" ? bench_tariq(options.drops, options.width, options.height, options.frames, software)
+      auto measured = name == "halos" ? bench_halos(options.width, options.height, options.frames, software)
+                      : name == "tariq" ? bench_tariq(options.drops, options.width, options.height, options.frames, software)
                       : name == "near_drops" ? bench_near_drops(options.frames, software)
+                      : name == "drips" ? bench_drips(options.width, options.height, options.frames, software)
+                      : name == "ripples" ? bench_ripples(options.frames, software)
+                      : name == "reflections" ? bench_reflections(all_passes, options.width, options.height, options.frames,
+                                                                  software)
                       : name == "rungs" ? bench_rungs(options.width, options.height, options.frames, software,
                                                     affordable_drops((*renderer)->device))
                                       : bench_rain(options.drops, options.width, options.height, options.frames, software);

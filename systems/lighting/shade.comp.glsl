@@ -1,19 +1,21 @@
 #version 450 core
 // Lights every surface of the G-buffer: chosen lamps with GGX and Lambert, the captured environment, and what the
-// surface itself emits; the sky where there is none. Writes radiance in cd/m2. The loops run over the masks of light_lists: first the lamps
-// with shadow maps, then the rest, because software OpenGL executes both sides of a branch.
+// surface itself emits; the sky where there is none. Writes radiance in cd/m2. The loops run over the masks of
+// light_lists: first the lamps with shadow maps, then the rest, because software OpenGL executes both sides of a branch.
 #define GBUFFER_FIRST_UNIT 0
 #include "systems/geometry/gbuffer.glsl"
-#include "systems/lighting/brdf.h"
+#include "systems/lighting/facing.glsl"
 #include "systems/lighting/environment.glsl"
 #include "systems/lighting/lighting_shared.h"
 #include "systems/lighting/shadow.glsl"
+#include "systems/reflection/streak.h"
 #include "systems/sky.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(binding = 4) uniform usampler2D light_lists;
 layout(binding = 0, rgba16f) uniform writeonly image2D colour;
 uniform float diffuse_gain;  // multiplies the environment's diffuse light
+uniform float lamps_elsewhere;  // share of the frame whose lamps pass reflections mirrors
 layout(std430, binding = TILES_BINDING) readonly buffer Tiles { uint tiles[]; };
 uniform uint list_start;  // of this dispatch's kind of tiles; one tile a work group
 
@@ -30,61 +32,13 @@ void main() {
 }
 #else
 
-struct Facing {  // what a pixel needs for every light
-  vec3 place;
-  vec3 normal;
-  vec3 view;
-  vec3 mirror;
-  float n_dot_v;
-  float alpha;
-  float a2;
-  float smith_view;  // the view's half of the Smith term, for the unwidened lobe
-  vec3 f0;
-  float dielectric;
-};
-
-// Sums of light: diffuse irradiance, and specular radiance.
-void add_light(LightGpu light, Facing at, float extinction, float passes, inout vec3 irradiance, inout vec3 specular) {
-  bool directional = light.direction_kind.w == float(LIGHT_DIRECTIONAL);
-  vec3 to_light = directional ? -light.direction_kind.xyz * 1e4 : light.position_range.xyz - at.place;
-  float d2 = dot(to_light, to_light);
-  float inverse_d = inversesqrt(d2);
-  vec3 l = to_light * inverse_d;
-  float n_dot_l = clamp(dot(at.normal, l), 0.0, 1.0);
-  float strength = distance_attenuation(d2, light.position_range.w) * exp(-extinction * d2 * inverse_d);
-  strength *= spot_attenuation(-dot(l, light.direction_kind.xyz), light.cone_shadow.x, light.cone_shadow.y);
-  strength = (directional ? 1.0 : strength) * n_dot_l * passes;
-  vec3 e = light.intensity_radius.rgb * strength;
-  irradiance += e;
-
-  vec3 s = normalize(sphere_light_point(to_light, at.mirror, light.intensity_radius.w));
-  vec2 lobe = sphere_light_lobe(at.alpha, light.intensity_radius.w, inverse_d);
-  vec3 h = normalize(s + at.view);
-  float n_dot_h = clamp(dot(at.normal, h), 0.0, 1.0);
-  float v_dot_h = clamp(dot(at.view, h), 0.0, 1.0);
-  float smith = 0.5 / max(n_dot_l * at.smith_view +
-                          at.n_dot_v * sqrt(n_dot_l * n_dot_l * (1.0 - at.a2) + at.a2), 1e-5);
-  specular += e * fresnel(at.f0, v_dot_h, at.dielectric) *
-              (ggx_distribution(n_dot_h, lobe.x * lobe.x) * lobe.y * smith);
-}
-
 void main() {
   ivec2 texel = own_texel();
   if (any(greaterThanEqual(texel, ivec2(frame.size.xy)))) return;
   float depth = read_depth(texel);
   Surface surface = read_surface(texel);
 
-  Facing at;
-  at.place = relative_position(vec2(texel) + 0.5, max(depth, 1e-7));
-  at.normal = surface.normal;
-  at.view = -normalize(at.place);
-  at.n_dot_v = clamp(dot(at.normal, at.view), 0.02, 1.0);
-  at.mirror = reflect(-at.view, at.normal);
-  at.alpha = max(surface.roughness * surface.roughness, 2e-3);
-  at.a2 = at.alpha * at.alpha;
-  at.smith_view = sqrt(at.n_dot_v * at.n_dot_v * (1.0 - at.a2) + at.a2);
-  at.f0 = mix(vec3(DIELECTRIC_F0), surface.albedo, surface.metallic);
-  at.dielectric = 1.0 - surface.metallic;
+  Facing at = facing_of(surface, relative_position(vec2(texel) + 0.5, max(depth, 1e-7)));
 
   float extinction = frame.mist.x + frame.rain.z;
   vec3 irradiance = vec3(0.0), specular = vec3(0.0);
@@ -112,16 +66,14 @@ void main() {
     add_light(chosen.lights[word * 32 + findLSB(bits)], at, extinction, 1.0, irradiance, specular);
   }
 
-  vec2 albedo_terms = ggx_albedo(surface.roughness, at.n_dot_v);
-  vec3 reflected = at.f0 * albedo_terms.x + albedo_terms.y;
+  vec3 reflected = mirrored_share(at, surface.roughness);
+  // Where pass reflections draws the lamps, their highlights are left to it.
+  specular *= 1.0 - lamps_elsewhere * mirror_share(surface.roughness);
   // What GGX reflects does not reach the diffuse layer below it.
   vec3 diffuse = surface.albedo * at.dielectric * (1.0 - max(reflected.r, max(reflected.g, reflected.b)));
   vec3 radiance = diffuse * irradiance / PI + specular + surface.emissive;
 #ifdef ENVIRONMENT
-  // Light from below the horizon of a smooth normal does not arrive; neither does much where it is occluded
-  // (Lagarde and de Rousiers 2014, "Moving Frostbite to PBR", specular occlusion).
-  float open = clamp(pow(at.n_dot_v + surface.occlusion, exp2(-16.0 * surface.roughness - 1.0)) - 1.0 + surface.occlusion,
-                     0.0, 1.0);
+  float open = mirror_open(at, surface.roughness, surface.occlusion);
   radiance += (diffuse * environment_diffuse(at.normal) * surface.occlusion * diffuse_gain +
                reflected * environment_radiance(at.mirror, surface.roughness) * open) * frame.sky_zenith.w;
 #endif

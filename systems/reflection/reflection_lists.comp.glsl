@@ -1,0 +1,80 @@
+#version 450 core
+// Which panels and posts matter in each tile of the half-size buffer: a bit each, nearest first. One thread a tile, as in
+// light_lists; a bound on the share of the lobe that a rectangle can take anywhere in the tile.
+#define GBUFFER_FIRST_UNIT 0
+#include "systems/reflection/mirror_texel.glsl"
+#include "systems/reflection/stand_ins.glsl"
+
+layout(local_size_x = 8, local_size_y = 8) in;
+layout(binding = 0, rgba32ui) uniform writeonly uimage2D lists;
+uniform float threshold;  // of a white pixel
+uniform vec3 backdrop;    // cd/m2 of what a post may hide
+
+// Cosine of max(0, angle - spread), from the cosines of both.
+float widened_cosine(float cosine, float spread_cosine) {
+  if (cosine >= spread_cosine) return 1.0;
+  float s = sqrt(max((1.0 - cosine * cosine) * (1.0 - spread_cosine * spread_cosine), 0.0));
+  return clamp(cosine * spread_cosine + s, -1.0, 1.0);
+}
+
+void main() {
+  ivec2 tile = ivec2(gl_GlobalInvocationID.xy);
+  ivec2 size = ivec2(frame.size.xy), first = tile * (2 * REFLECTION_TILE);
+  if (any(greaterThanEqual(first, size))) return;
+  float near_depth = 0.0, far_depth = 1.0, smoothest = 1.0, count = 0.0;
+  vec3 normal_sum = vec3(0.0);
+  for (int i = 0; i < 32; ++i) {  // every other texel of every other row
+    ivec2 texel = min(first + 2 * ivec2(2 * (i & 3) + ((i >> 2) & 1), i >> 2), size - 1);
+    float depth = read_depth(texel);
+    vec4 encoded = texelFetch(gbuffer_normal, texel, 0);
+    bool mirrors = depth > 0.0 && mirror_share(encoded.z) > 0.0;
+    near_depth = mirrors ? max(near_depth, depth) : near_depth;
+    far_depth = mirrors ? min(far_depth, depth) : far_depth;
+    smoothest = mirrors ? min(smoothest, encoded.z) : smoothest;
+    normal_sum += mirrors ? unit_from_octahedral(encoded.xy * 2.0 - 1.0) : vec3(0.0);
+    count += mirrors ? 1.0 : 0.0;
+  }
+  if (count == 0.0) {
+    imageStore(lists, tile, uvec4(0u));
+    return;
+  }
+  vec3 ray = view_ray(vec2(first) + float(REFLECTION_TILE)), corner = view_ray(vec2(first));
+  vec3 forward = -vec3(frame.view[0][2], frame.view[1][2], frame.view[2][2]);
+  float along = 1.0 / max(dot(ray, forward), 0.05);
+  float near_m = axial_distance_m(near_depth) * along, far_m = axial_distance_m(far_depth) * along;
+  vec3 centre = ray * 0.5 * (near_m + far_m);
+  float half_angle = sqrt(max(1.0 - dot(ray, corner) * dot(ray, corner), 0.0));
+  float radius = length(vec2(0.5 * (far_m - near_m), half_angle * far_m));
+  float mean_length = length(normal_sum) / count;
+  vec3 normal = normal_sum / max(mean_length * count, 1e-6);
+  float normal_cosine = clamp(2.0 * mean_length - 1.0 - 0.005, -1.0, 1.0);
+  float alpha = max(smoothest * smoothest, 2e-3), a2 = alpha * alpha + 2.0 * (1.0 - mean_length);
+  float n_dot_v = max(widened_cosine(dot(normal, -ray), normal_cosine), 0.05);
+
+  uvec4 mask = uvec4(0u);
+  for (uint i = 0u; i < reflectors.counts.x; ++i) {
+    ReflectorGpu q = reflectors.all[i];
+    vec3 to = q.centre_kind.xyz - centre;
+    float d = max(length(to), 1e-3);
+    float spread = min((radius + q.up_reach.w) / d, 1.0);
+    float spread_cosine = sqrt(1.0 - spread * spread);
+    vec3 l = to / d;
+    float n_dot_l = widened_cosine(widened_cosine(dot(normal, l), normal_cosine), spread_cosine);
+    float share = 1.0;
+    if (spread < 0.7) {
+      vec3 h = normalize(l - ray);
+      float half_spread = min(0.5 * (spread + half_angle), 1.0);
+      float n_dot_h = widened_cosine(widened_cosine(dot(normal, h), normal_cosine), sqrt(1.0 - half_spread * half_spread));
+      float v_dot_h = max(dot(h, -ray) - half_spread, 0.05);
+      float solid = 4.0 * length(q.across_seen.xyz) * length(q.up_reach.xyz) / ((d - radius) * (d - radius) + 1e-4);
+      // Lobe density over directions is D (n.h) / (4 v.h).
+      share = min(ggx_distribution(n_dot_h, min(a2, 1.0)) * n_dot_h * solid / (4.0 * v_dot_h), 1.0);
+    }
+    float reflectance = 0.04 + pow(1.0 - n_dot_v, 5.0);
+    bool post = q.centre_kind.w == float(REFLECTOR_POST);
+    vec3 shines = post ? backdrop : q.radiance.rgb;
+    float bright = max(shines.r, max(shines.g, shines.b)) * reflectance * frame.lens.w * share * q.across_seen.w;
+    if (n_dot_l > 0.0 && bright > threshold) mask[i >> 5] |= 1u << (i & 31u);
+  }
+  imageStore(lists, tile, mask);
+}
