@@ -15,6 +15,7 @@ struct DripSource {
   float edge_share = 1.0f;        // of the catchment's water; the rest goes down a pipe (a gutter leaks little)
   float runoff_s = 25.0f;         // time constant of the water on the catchment: it drips on after the rain
   float site_spacing_mm = 24.3f;  // from drop to drop: 2 pi sqrt(2) capillary lengths under an even edge
+  float site_scatter = 0.4f;      // of the spacing, how unevenly they hang
   float jitter = 0.15f;           // of the time from one drop of a site to the next, either way
   float wind = 1.0f;              // multiplies the wind on its drops
   float elongation = 1.0f;        // of billboards: multiplies how motion stretches them; 1: as far as they fall
@@ -63,9 +64,9 @@ struct WetGround {
 struct Ripples {
   bool published = false;          // as printed: dampened sines by drops' mass, 16 bits; their level drifts
   float strength = 1.0f;           // multiplies all slopes; 1 is true
-  float wave_speed_mps = 0.225f;   // of all waves on the lattice: real ones of 10 to 50 mm run so
+  float wave_speed_mps = 0.235f;   // of all waves on the lattice: closest to what real ones of a drop do together
   float decay_per_s = 1.8f;        // of their heights
-  float tile_m = 1.0f;             // edge of the tile that all puddles share
+  float tile_m = 0.75f;            // edge of the tile that all puddles share; 256 cells of it fit real rings
   float seed_cells = 3.0f;         // least deviation of a ring's seed, in cells of the lattice; narrower ones break up
 };
 

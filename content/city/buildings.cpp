@@ -123,7 +123,8 @@ void add_house(Scene& scene, const std::string& name, const glm::mat4& frame, co
   const int node = add_node(scene, name, parent, scene.add_mesh(std::move(mesh)), frame);
   if (style.roof == Roof::saddle || style.roof == Roof::mansard) {
     const float z = style.roof == Roof::saddle ? 0.66f : 0.53f;
-    mark_drip(scene, node, glm::translate(glm::mat4(1.0f), {0.0f, eaves - 0.1f, z}), f.width_m, 0.5f * depth, 2.0f);
+    mark_drip(scene, node, glm::translate(glm::mat4(1.0f), {0.0f, eaves - 0.1f, z}), f.width_m, 0.5f * depth, 2.0f,
+              {.edge_share = 0.04f});
   } else {
     mark_drip(scene, node, glm::translate(glm::mat4(1.0f), {0.0f, eaves - 0.05f, 0.5f}), f.width_m, 0.5f, 3.0f);
   }
@@ -132,7 +133,8 @@ void add_house(Scene& scene, const std::string& name, const glm::mat4& frame, co
               {{1.0f, 0.72f, 0.42f}, 34.0f, 9.0f, 0, 0, false, 0.6f});
   }
   if (f.awning)
-    mark_drip(scene, node, glm::translate(glm::mat4(1.0f), {0.35f, 2.0f, 1.5f}), f.width_m - 0.7f, 1.5f, 1.5f);
+    mark_drip(scene, node, glm::translate(glm::mat4(1.0f), {0.35f, 2.01f, 1.5f}), f.width_m - 0.7f, 1.5f, 1.5f,
+              {.edge_share = 0.4f, .sites = awning_stripes(f.width_m - 0.7f)});
 }
 
 void add_row(Scene& scene, const std::string& name, const Frontage& line, std::uint32_t seed) {

@@ -163,7 +163,7 @@ void add_corner(Scene& scene, const std::string& name, int sx, int sz, Style sty
   }
   for (std::size_t k = 0; k < 3; ++k) {
     mark_drip(scene, node, frames[k] * glm::translate(glm::mat4(1.0f), {0.0f, eaves - 0.1f, 0.53f}),
-              glm::length(line[k + 1] - line[k]), 2.0f, 2.0f);
+              glm::length(line[k + 1] - line[k]), 2.0f, 2.0f, {.edge_share = 0.1f});
   }
 }
 

@@ -80,7 +80,8 @@ void mark_pane(Scene& scene, int parent, const glm::mat4& frame, glm::vec2 size_
 }
 
 void mark_probe(Scene& scene, int node, glm::vec3 centre_m, float radius_m) {
-  nlohmann::json extras;
+  const std::string& marked = scene.nodes[static_cast<std::size_t>(node)].extras_json;
+  nlohmann::json extras = marked.empty() ? nlohmann::json::object() : nlohmann::json::parse(marked);
   extras["reflection_probe"] = {{"centre_m", {centre_m.x, centre_m.y, centre_m.z}}, {"radius_m", radius_m}};
   scene.nodes[static_cast<std::size_t>(node)].extras_json = extras.dump();
 }

@@ -100,8 +100,12 @@ void shop_front(Builder& b, const Style& style, const Facade& f, float x0, float
            glm::vec3(0.42f, 0.39f, 0.33f));
 }
 
+int awning_stripes(float length_m) {
+  return std::max(4, static_cast<int>(std::lround(length_m / 0.28f)));
+}
+
 void awning(Builder& b, float x0, float x1, float y_top, float drop, float reach, glm::vec3 stripe, glm::vec3 ground) {
-  const int stripes = std::max(4, static_cast<int>(std::lround((x1 - x0) / 0.28f)));
+  const int stripes = awning_stripes(x1 - x0);
   const float y1 = y_top - drop;
   const float valance = 0.24f;
   for (int k = 0; k < stripes; ++k) {

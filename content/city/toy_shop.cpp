@@ -235,9 +235,9 @@ void add_toy_shop(Scene& scene) {
   awning(main_side, 4.55f, 9.8f, glass_top_m + 0.03f, 0.62f, 1.35f, {0.42f, 0.020f, 0.025f}, {0.52f, 0.47f, 0.38f});
   awning(lane, 0.2f, 5.55f, glass_top_m + 0.03f, 0.62f, 1.35f, {0.42f, 0.020f, 0.025f}, {0.52f, 0.47f, 0.38f});
   mark_drip(scene, parent, main_frame * glm::translate(glm::mat4(1.0f), {4.55f, glass_top_m - 0.83f, 1.35f}), 5.25f,
-            1.4f, 1.5f);
+            1.4f, 1.5f, {.edge_share = 0.4f, .sites = awning_stripes(5.25f)});
   mark_drip(scene, parent, lane_frame * glm::translate(glm::mat4(1.0f), {0.2f, glass_top_m - 0.83f, 1.35f}), 5.35f,
-            1.4f, 1.5f);
+            1.4f, 1.5f, {.edge_share = 0.4f, .sites = awning_stripes(5.35f)});
 
   // TOY SHOP in tubes over the door, ringed in blue.
   Builder tubes = cut.moved({0, 0, 0.12f});

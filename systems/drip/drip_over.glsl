@@ -11,5 +11,5 @@ layout(location = 3) flat DRIP_STAGE uvec2 which;       // source; 1: a billboar
 layout(location = 4) flat DRIP_STAGE vec3 even_light;   // of lamps, over the whole disc, cd/m2
 layout(location = 5) flat DRIP_STAGE vec3 glint_light;  // of the lamp that glints most
 layout(location = 6) flat DRIP_STAGE vec2 glint_place;  // in the disc, in radii
-layout(location = 7) flat DRIP_STAGE float away;        // m
+layout(location = 7) flat DRIP_STAGE vec2 away_tall;    // m; height over width of a drop that hangs, or 1
 #endif

@@ -23,7 +23,7 @@ using glm::vec4;
 #endif
 
 // A drop. Its image is a disc that moves along the velocity while the shutter is open; what it is higher than wide is
-// part of that way.
+// part of that way. One that hangs has no velocity and is an ellipse.
 struct DripGpu {
   vec4 place_width;       // where that way ends, relative to the camera, m; w: width, m
   vec4 velocity_stretch;  // that way over the exposure, m/s; w: height over width

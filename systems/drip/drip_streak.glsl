@@ -9,9 +9,11 @@ layout(std430, binding = DRIPS_BINDING) readonly buffer Drips { DripGpu drips[];
 // What hangs from an edge or falls past it stands a little before it: places are those of the marks, not of the mesh.
 const float edge_bias_m = 0.03;
 
+bool hangs(DripGpu drip) { return drip.velocity_stretch.xyz == vec3(0.0); }
+
 bool project_drip(DripGpu drip, out Streak s) {
   bool seen = project(drip.place_width.xyz, 0.0, 1.0, drip.velocity_stretch.xyz, drip.place_width.w, s);
-  s.area *= drip.velocity_stretch.w;
+  s.area *= drip.velocity_stretch.w;  // where it moves: of a longer way
   s.depths *= 1.0 + edge_bias_m * s.depths / frame.camera_world_m.w;
   return seen;
 }

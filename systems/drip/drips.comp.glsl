@@ -13,6 +13,7 @@ void main() {
   DripGpu drip = drips[index];
   Streak s;
   if (!project_drip(drip, s)) return;
+  if (hangs(drip)) s.radius *= sqrt(drip.velocity_stretch.w);  // a disc of the ellipse's area
   drop_bits = drip.bits.x;
   lanes = DRIP_LANES;
   lane = int(gl_GlobalInvocationID.x % uint(DRIP_LANES));

@@ -30,7 +30,7 @@ vec3 in_world(vec2 q) {
 float billboard_opacity(DripLooksGpu look, float f, float texture_opacity) {
   bool published = look.published.x > 0.5;
   float l_b = 1.0 + lightning;
-  float d_p = published ? clamp(1.0 - away / reach_m, 0.0, 1.0) : 1.0;
+  float d_p = published ? clamp(1.0 - away_tall.x / reach_m, 0.0, 1.0) : 1.0;
   float by_lightning = published ? 1.0 - 0.5 * l_b : 1.0 - 0.5 * (l_b - 1.0);
   float alpha = texture_opacity * look.opacity.x;
   return clamp(d_p * alpha * (look.opacity.y * f + look.opacity.z) * max(by_lightning, 0.0), 0.0, 1.0);
@@ -65,7 +65,7 @@ void main() {
 #endif
   if (which.y == 1u) {
     DripLooksGpu look = looks[which.x];
-    vec2 half_size = vec2(r, r + 0.5 * len);
+    vec2 half_size = vec2(r, r * away_tall.y + 0.5 * len);
     vec2 q = vec2(x, t - 0.5 * len) / half_size;
     float edge = (1.0 - length(q)) * min(half_size.x, half_size.y) + 0.5;  // pixels
     if (edge <= 0.0) return;
@@ -77,6 +77,8 @@ void main() {
   // The pixel's share of the time within a disc that moves from one place to the other: as raster.glsl's capsules.
   float coverage, near, far;
   if (len < 0.5) {
+    // A disc, or an ellipse: as a disc in its own measure.
+    offset = 0.5 * span + side * x + along * ((t - 0.5 * len) / away_tall.y);
     float edge = r + 0.5 - length(offset - 0.5 * span);
     if (edge <= 0.0) return;
     coverage = min(edge, 1.0) * (r * r) / (r * r + 0.0833333);
@@ -94,6 +96,8 @@ void main() {
   int places = len < 0.5 ? 1 : 3;
   float area = clamp(max(1.0, (far - near) / float(places)) / (r * r), 1e-4, 3.14159265);
   float across_glint = max(0.16, 0.4 / r), along_glint = max(across_glint, 0.4 * (far - near) / (float(places) * r));
+  // What of the glint falls beyond the rim is given back to it.
+  float within = 1.0 / (1.0 + exp(-1.7 * (1.0 - length(glint_place)) / across_glint));
   vec3 shown = even_light;
   for (int i = 0; i < places; ++i) {
     float centre = places == 1 ? near : mix(near, far, (float(i) + 0.5) / 3.0);
@@ -102,7 +106,7 @@ void main() {
     vec3 o = b > 1e-3 ? normalize(in_world(q)) : normalize(in_world(side));
     vec2 g = q - glint_place;
     vec2 bent = vec2(dot(g, side) / across_glint, dot(g, along) / along_glint);
-    float glint = exp(-0.5 * dot(bent, bent)) / (2.0 * across_glint * along_glint);
+    float glint = exp(-0.5 * dot(bent, bent)) / (2.0 * across_glint * along_glint * within);
     shown += (seen_in_drip(ray, o, b, area) + glint_light * glint) / float(places);
   }
   over = vec4(shown * coverage, 1.0 - coverage);

@@ -19,15 +19,16 @@ void main() {
   which = drip.bits.zw;
   even_light = glint_light = vec3(0.0);
   glint_place = vec2(0.0);
-  away = 1.0;
+  away_tall = vec2(1.0);
   if (!project_drip(drip, s)) return;
-  away = length(s.middle);
+  float away = length(s.middle), tall = hangs(drip) ? drip.velocity_stretch.w : 1.0;
+  away_tall = vec2(away, tall);
   ray = s.middle / away;
   vec2 along = s.to - s.from;
   float len = length(along);
   along = len > 1e-3 ? along / len : vec2(0.0, -1.0);
   float r = max(s.radius, 0.5);  // at least a pixel wide
-  float kept = s.area / (3.14159265 * r * r);
+  float kept = s.area / (3.14159265 * r * r * tall);
   if (drip.bits.w == 1u) {
     // Stochastic elongation by motion, driven by depth and velocity (section 3.2): the way that it falls while the
     // shutter is open, times its own factor, less for far ones.
@@ -42,7 +43,7 @@ void main() {
     s.to = middle + 0.5 * len * along;
     // The disc's picture is stretched over the whole way: an ellipse, so opaque that the drop's mean is kept; as printed
     // it is as opaque as it is.
-    kept = published ? 1.0 : s.area / (3.14159265 * r * (r + 0.5 * len));
+    kept = published ? 1.0 : s.area / (3.14159265 * r * (r * tall + 0.5 * len));
   }
   from_to = vec4(s.from, s.to);
   depths_kept = vec4(s.depths, r, kept);
@@ -77,6 +78,6 @@ void main() {
   // Two triangles about the way.
   vec2 corner = vec2(float(gl_VertexID & 1) * 2.0 - 1.0, float(gl_VertexID >> 1) * 2.0 - 1.0);
   vec2 across = vec2(-along.y, along.x);
-  vec2 pixel = 0.5 * (s.from + s.to) + across * (corner.x * (r + 1.0)) + along * (corner.y * (0.5 * len + r + 1.0));
+  vec2 pixel = 0.5 * (s.from + s.to) + across * (corner.x * (r + 1.0)) + along * (corner.y * (0.5 * len + r * tall + 1.0));
   gl_Position = vec4(pixel * frame.size.zw * 2.0 - 1.0, 0.0, 1.0);
 }

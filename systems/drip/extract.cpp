@@ -101,8 +101,8 @@ void add_drop(Extraction& x, Edge& e, const DripSite& site, int index, const Fal
     return lip + glm::dvec3(air.x * fall.drift_s, -fall.fallen_m - 0.5e-3 * diameter, air.z * fall.drift_s);
   };
   const double age = x.time_s - f.detach_s, landed = time_to_fall_s(terminal, ground);
-  const auto looks = random_bits(glm::uvec4(s.seed, static_cast<std::uint32_t>(index), static_cast<std::uint32_t>(f.k),
-                                            0x6c6f6f6bu));
+  const auto looks =
+      random_bits(glm::uvec4(s.seed, static_cast<std::uint32_t>(index), static_cast<std::uint32_t>(f.k), 0x6c6f6f6bu));
   if (age >= landed) {
     if (!e.near || ground >= longest_fall_m || age - landed > landing_memory_s) return;
     const DripFall fall = fall_after(terminal, landed, blows);
@@ -125,8 +125,8 @@ void add_drop(Extraction& x, Edge& e, const DripSite& site, int index, const Fal
   const double settled = std::min(fall.fall_speed_mps / terminal, 1.0);
   drop.stretch = static_cast<float>(glm::mix(1.0 + 0.35 * std::exp(-5e-6 * age / (a * a)) * std::cos(omega * age),
                                              axis_ratio(diameter), settled * settled));
-  if (group > 1 || (age < thread_s && neck_weber(f.volume_m3 / group / std::max(f.gap_s / group, 1e-6),
-                                                 s.set.lip_radius_mm) > 4.0)) {
+  if (group > 1 || (age < thread_s &&
+                    neck_weber(f.volume_m3 / group / std::max(f.gap_s / group, 1e-6), s.set.lip_radius_mm) > 4.0)) {
     // A thread as long as the way to the drop before, of the water that is in it.
     const double length = std::max(fall.fall_speed_mps, 0.3) * f.gap_s;
     const double wide = std::sqrt(4.0 * f.volume_m3 / (std::numbers::pi * std::max(length, 1e-4)));
@@ -216,8 +216,7 @@ void add_edge(Extraction& x, const DripSourceMotion& s) {
   e.source = &s;
   if (s.poses.empty() || x.frame.sources.size() >= 65000 || !look_at_edge(x, e)) return;
   e.number = static_cast<std::uint16_t>(x.frame.sources.size());
-  x.frame.sources.push_back(
-      {s.set.opacity, s.set.edge_strength, s.set.edge_bias, s.set.elongation, s.set.published});
+  x.frame.sources.push_back({s.set.opacity, s.set.edge_strength, s.set.edge_bias, s.set.elongation, s.set.published});
   const double fall = *std::max_element(e.falls->begin(), e.falls->end());
   e.buckets = static_cast<int>(fall / bucket_m) + 1;
   e.clusters.assign(static_cast<std::size_t>((static_cast<int>(s.set.length_m / piece_m) + 1) * e.buckets), 0);
@@ -237,9 +236,12 @@ void add_edge(Extraction& x, const DripSourceMotion& s) {
 std::shared_ptr<const FrameDrips> make_frame_drips(const DripMotion& motion, const FrameCamera& camera, int width,
                                                    int height, double time_s, std::size_t most) {
   const float aspect = static_cast<float>(width) / static_cast<float>(std::max(height, 1));
-  Extraction x{motion, camera,
+  Extraction x{motion,
+               camera,
                frustum_of(view_projection_of(camera.orientation, camera.vertical_fov_rad, aspect, camera.near_m)),
-               time_s, {}, {}};
+               time_s,
+               {},
+               {}};
   for (const DripSourceMotion& s : motion.sources) add_edge(x, s);
   FrameDrips& f = x.frame;
   f.reach_m = static_cast<float>(drip_reach_m);

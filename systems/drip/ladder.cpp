@@ -12,10 +12,11 @@ Ladder drips_ladder() {
   l.meaning = "drops that hang and fall from gutters, ledges, awnings and wires";
   l.truth = "the same drops, refracting at 16 times the pixels, the mean of 16 instants of the exposure";
   l.error_measure = "root mean square of luminance over the picture; no drips: 1";
-  l.rungs = {{"none", "no drips", {}, 0.0, 1.0},
-             {"billboards", "screen-aligned billboards with a normal map", {"drips_over"}, 1.0, 0.6},
-             {"streaks", "streaks as long as the exposure, by the rain's own optics", {"drips"}, 1.0, 0.5},
-             {"refracting", "streaks, and those of two pixels and more show the world", {"drips", "drips_over"}, 1.4, 0.4}};
+  l.rungs = {
+      {"none", "no drips", {}, 0.0, 1.0},
+      {"billboards", "screen-aligned billboards with a normal map", {"drips_over"}, 1.0, 0.6},
+      {"streaks", "streaks as long as the exposure, by the rain's own optics", {"drips"}, 1.0, 0.5},
+      {"refracting", "streaks, and those of two pixels and more show the world", {"drips", "drips_over"}, 1.4, 0.4}};
   // Each drop's streak is some tens of pixels of a picture of some 10^5: ten thousand are a picture full of them.
   l.coverage = [](const Frame& frame) {
     return frame.drips && !frame.drips->drops.empty()

@@ -61,7 +61,7 @@ const DripFlow& flow_of(const DripSourceMotion& s, double time_s) {
 
 bool same_edge(const DripSource& a, const DripSource& b) {
   return a.length_m == b.length_m && a.lip_radius_mm == b.lip_radius_mm && a.site_spacing_mm == b.site_spacing_mm &&
-         a.jitter == b.jitter;
+         a.jitter == b.jitter && a.site_scatter == b.site_scatter;
 }
 
 void set_edge(DripSourceMotion& s, const DripSource& set) {
@@ -142,7 +142,8 @@ double time_of_drained(const DripSourceMotion& s, double drained) {
   auto after = std::upper_bound(s.flows.begin(), s.flows.end(), drained,
                                 [](double d, const DripFlow& f) { return d < f.drained_m2; });
   const DripFlow& f = after == s.flows.begin() ? s.flows.front() : *(after - 1);
-  const double wanted = std::max(drained - f.drained_m2, 0.0), q0 = f.runoff_s > 0.0 ? f.reservoir_m2 / f.runoff_s : 0.0;
+  const double wanted = std::max(drained - f.drained_m2, 0.0),
+               q0 = f.runoff_s > 0.0 ? f.reservoir_m2 / f.runoff_s : 0.0;
   if (!(f.runoff_s > 0.0)) return f.time_s + std::max(wanted - f.reservoir_m2, 0.0) / std::max(f.inflow_m2ps, 1e-30);
   if (std::abs(q0 - f.inflow_m2ps) <= 1e-12 * q0) return f.time_s + wanted / std::max(q0, 1e-30);
   // g(t) = inflow t + (q0 - inflow) tau (1 - exp(-t / tau)): monotone. Newton, kept within a bracket; what is beyond
@@ -170,7 +171,8 @@ DripSite drip_site(const DripSourceMotion& s, int site) {
   const glm::vec4 r = bits(site);
   // Shares differ by up to a half either way, and telescope: their sum is exact.
   const double share = s.sites > 1 ? 1.0 + 0.5 * (double(r.x) - double(bits(site + 1).x)) : 1.0;
-  const double along = (site + 0.5 + 0.4 * (double(r.y) - 0.5)) * s.set.length_m / s.sites;
+  const double scatter = std::clamp(s.set.site_scatter, 0.0f, 1.0f);
+  const double along = (site + 0.5 + scatter * (double(r.y) - 0.5)) * s.set.length_m / s.sites;
   const double most = 1.0 - 0.5 * std::clamp(s.set.jitter, 0.0f, 0.9f);  // below the first threshold
   return {along, share, s.wet_at_start ? most * 0.999 * double(r.z) : 0.0};
 }

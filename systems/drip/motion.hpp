@@ -45,11 +45,11 @@ struct DripSourceMotion {
   std::uint32_t life = 0;  // its place among all sources that ever were
   std::uint32_t edge = 0;  // how often its edge was changed
   int sites = 1;
-  double drop_m3 = 0.0;  // mean volume of its drops
-  bool wet_at_start = false;  // it had rained: drops hang at all sites
+  double drop_m3 = 0.0;                              // mean volume of its drops
+  bool wet_at_start = false;                         // it had rained: drops hang at all sites
   double carried_in_m3 = 0.0, carried_out_m3 = 0.0;  // from before its edge was changed
-  std::vector<DripFlow> flows;  // by time
-  std::vector<DripPose> poses;  // by time
+  std::vector<DripFlow> flows;                       // by time
+  std::vector<DripPose> poses;                       // by time
 };
 
 // On the emitter's entity. Written by simulate_drips only.

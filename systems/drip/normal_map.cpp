@@ -50,8 +50,7 @@ Level next_level(const Level& fine, int size) {
 }  // namespace
 
 Texture make_droplet_normals() {
-  Texture texture =
-      make_texture_2d(DRIP_NORMALS, DRIP_NORMALS, GL_RGBA8, full_mip_levels(DRIP_NORMALS, DRIP_NORMALS));
+  Texture texture = make_texture_2d(DRIP_NORMALS, DRIP_NORMALS, GL_RGBA8, full_mip_levels(DRIP_NORMALS, DRIP_NORMALS));
   Level level = droplet(DRIP_NORMALS);
   for (int l = 0, size = DRIP_NORMALS; l < texture.levels; ++l, size /= 2) {
     std::vector<std::uint8_t> bytes;

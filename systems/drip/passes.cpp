@@ -43,13 +43,13 @@ float pixels_per_radian(const Frame& frame) {
   return 0.5f * static_cast<float>(frame.height) / std::tan(0.5f * frame.camera.vertical_fov_rad);
 }
 
-// Its way while the shutter is open, and the way's share that its height adds to its width.
+// Its way while the shutter is open, with what it is higher than wide; what stands still is drawn as high as it is.
 DripGpu to_gpu(const Frame& frame, const FrameDrip& d, bool billboard) {
   const float wide = 1e-3f * d.diameter_mm * std::pow(d.stretch, -1.0f / 3.0f), high = wide * d.stretch;
   glm::vec3 place(d.place_m - frame.camera.position_m), velocity = d.velocity_mps;
   const float speed = glm::length(velocity), exposure = frame.camera.exposure_s;
-  if (high > wide && exposure > 1e-6f) {
-    const glm::vec3 way = speed > 1e-3f ? velocity / speed : glm::vec3(0.0f, -1.0f, 0.0f);
+  if (high > wide && speed > 1e-3f && exposure > 1e-6f) {
+    const glm::vec3 way = velocity / speed;
     place += way * (0.5f * (high - wide));
     velocity += way * ((high - wide) / exposure);
   }
@@ -117,9 +117,8 @@ void draw_streaks(DripGpuState& gpu, PassContext& context) {
   const Frame& frame = context.frame;
   begin(gpu, context);
   bind_rain_sums(*gpu.sums, context.width, context.height);
-  const float px = context.parameter("shows_world_px");
   const std::uint32_t count = pick(gpu, frame, false, [&](const FrameDrip& d) {
-    const DripDrawing how = drawing_of(frame, d, px);
+    const DripDrawing how = drawing_of(frame, d);
     return how == DripDrawing::streak ? how : DripDrawing::none;
   });
   if (count == 0) return;
@@ -138,11 +137,10 @@ void draw_streaks(DripGpuState& gpu, PassContext& context) {
 void draw_pictures(DripGpuState& gpu, PassContext& context) {
   const Frame& frame = context.frame;
   begin(gpu, context);
-  const float px = context.parameter("shows_world_px");
   // Refracting drops are few and cover each other rightly. Of billboards, thousands, only drops of a pixel overlap.
   const bool few = share(frame, DripRung::billboards) == 0.0f;
   const std::uint32_t count = pick(gpu, frame, few, [&](const FrameDrip& d) {
-    const DripDrawing how = drawing_of(frame, d, px);
+    const DripDrawing how = drawing_of(frame, d);
     return how == DripDrawing::streak ? DripDrawing::none : how;
   });
   if (count == 0) return;
@@ -183,35 +181,35 @@ void draw_pictures(DripGpuState& gpu, PassContext& context) {
 constexpr const char* folder = "systems/drip/";
 
 void add_lamp_shaders(PassOffer& offer) {
-  offer.parameters = {{"least_radiance", 0.004}, {"shows_world_px", double(drip_shows_world_px)}};
+  offer.parameters = {{"least_radiance", 0.004}};
   offer.shaders["lamps"] = {{std::string(folder) + "drip_lamps.comp.glsl"}, {}};
   offer.shaders["lamps_software"] = {{std::string(folder) + "drip_lamps.comp.glsl"}, {"SOFTWARE"}};
 }
 
 }  // namespace
 
-DripDrawing drawing_of(const Frame& frame, const FrameDrip& d, float shows_world_px) {
+DripDrawing drawing_of(const Frame& frame, const FrameDrip& d) {
   const float u = static_cast<float>((d.seed * 0x9e3779b1u) >> 8u) * 5.9604644775390625e-8f;
   const float billboards = share(frame, DripRung::billboards), streaks = share(frame, DripRung::streaks);
   if (u < billboards) return DripDrawing::billboard;
   if (u < billboards + streaks) return DripDrawing::streak;
   if (u >= billboards + streaks + share(frame, DripRung::refracting)) return DripDrawing::none;
   const float away = static_cast<float>(glm::length(d.place_m - frame.camera.position_m));
-  return 0.5e-3f * d.diameter_mm * pixels_per_radian(frame) >= shows_world_px * away ? DripDrawing::refracting
-                                                                                    : DripDrawing::streak;
+  return 0.5e-3f * d.diameter_mm * pixels_per_radian(frame) >= frame.drips->shows_world_px * away
+             ? DripDrawing::refracting
+             : DripDrawing::streak;
 }
 
 bool draws_drip_streaks(const Frame& frame) {
   return has_drops(frame) && share(frame, DripRung::streaks) + share(frame, DripRung::refracting) > 0.0f;
 }
 
-bool draws_drip_pictures(const Frame& frame, float shows_world_px) {
+bool draws_drip_pictures(const Frame& frame) {
   if (!has_drops(frame)) return false;
   if (share(frame, DripRung::billboards) > 0.0f) return true;
   if (!(share(frame, DripRung::refracting) > 0.0f)) return false;
-  return std::any_of(frame.drips->drops.begin(), frame.drips->drops.end(), [&](const FrameDrip& d) {
-    return drawing_of(frame, d, shows_world_px) == DripDrawing::refracting;
-  });
+  return std::any_of(frame.drips->drops.begin(), frame.drips->drops.end(),
+                     [&](const FrameDrip& d) { return drawing_of(frame, d) == DripDrawing::refracting; });
 }
 
 std::vector<PassOffer> drip_passes(const DropPainting& painting) {
@@ -241,10 +239,8 @@ std::vector<PassOffer> drip_passes(const DropPainting& painting) {
   PassOffer& pictures = offers[1];
   pictures.name = "drips_over";
   pictures.meaning = "drips as pictures of drops: billboards, and near ones that show the world";
-  // shows_world_px: radius of its image above which a drop does.
-  pictures.slots = {{"colour", SlotAccess::modify},
-                    {"depth", SlotAccess::read, true},
-                    {"environment", SlotAccess::read, true}};
+  pictures.slots = {
+      {"colour", SlotAccess::modify}, {"depth", SlotAccess::read, true}, {"environment", SlotAccess::read, true}};
   add_lamp_shaders(pictures);
   for (const bool scene : {false, true})
     for (const bool lamps : {false, true})
@@ -256,7 +252,7 @@ std::vector<PassOffer> drip_passes(const DropPainting& painting) {
         pictures.shaders[drop_shader("pictures", scene, lamps) + (environment ? "_environment" : "")] = {
             {std::string(folder) + "drips_over.vert.glsl", std::string(folder) + "drips_over.frag.glsl"}, defines};
       }
-  pictures.wanted = [](const Frame& frame) { return draws_drip_pictures(frame, drip_shows_world_px); };
+  pictures.wanted = draws_drip_pictures;
   pictures.execute = [gpu](PassContext& context) { draw_pictures(*gpu, context); };
   return offers;
 }

@@ -7,16 +7,13 @@
 
 namespace petrichor {
 
-// Radius of a drip's image above which the refracting rung shows the world in it, pixels.
-constexpr float drip_shows_world_px = 1.0f;
-
 // Of these drops, how each is drawn in this frame: by its own random bits, so that none changes over while the shares
 // of the rungs stand still.
 enum class DripDrawing : std::uint8_t { none, streak, billboard, refracting };
 struct FrameDrip;
-DripDrawing drawing_of(const Frame&, const FrameDrip&, float shows_world_px);
+DripDrawing drawing_of(const Frame&, const FrameDrip&);
 
 bool draws_drip_streaks(const Frame&);
-bool draws_drip_pictures(const Frame&, float shows_world_px);
+bool draws_drip_pictures(const Frame&);
 
 }  // namespace petrichor

@@ -10,8 +10,7 @@ namespace petrichor {
 namespace {
 
 double harkins_brown(double x) {
-  return 1.0 +
-         x * (-0.9121 + x * (-2.109 + x * (13.38 + x * (-27.29 + x * (27.53 + x * (-13.58 + x * 2.593))))));
+  return 1.0 + x * (-0.9121 + x * (-2.109 + x * (13.38 + x * (-27.29 + x * (27.53 + x * (-13.58 + x * 2.593))))));
 }
 
 }  // namespace

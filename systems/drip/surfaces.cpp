@@ -42,7 +42,7 @@ DripSurfaces::DripSurfaces(std::span<const DripObstacle> obstacles) : impl_(std:
     for (const Primitive& p : o.mesh->primitives) vertices += p.vertices.size(), indices += p.indices.size();
   impl_->device = rtcNewDevice("threads=2");
   impl_->scene = rtcNewScene(impl_->device);
-  rtcSetSceneFlags(impl_->scene, RTC_SCENE_FLAG_ROBUST);        // drops along shared edges must not slip through
+  rtcSetSceneFlags(impl_->scene, RTC_SCENE_FLAG_ROBUST);         // drops along shared edges must not slip through
   rtcSetSceneBuildQuality(impl_->scene, RTC_BUILD_QUALITY_LOW);  // few rays: building it is what costs
   if (indices > 0) {
     RTCGeometry g = rtcNewGeometry(impl_->device, RTC_GEOMETRY_TYPE_TRIANGLE);

@@ -30,8 +30,9 @@ class DripSurfaces {
   DripSurfaces(const DripSurfaces&) = delete;
   DripSurfaces& operator=(const DripSurfaces&) = delete;
 
-  // Metres below each site at which its drops land, in wind of about that velocity (its cell of 0.5 m/s); longest_fall_m
-  // where there is nothing. A pure function of its arguments that is remembered; valid until the next call.
+  // Metres below each site at which its drops land, in wind of about that velocity (its cell of 0.5 m/s);
+  // longest_fall_m where there is nothing. A pure function of its arguments that is remembered; valid until the next
+  // call.
   const std::vector<float>& falls(const DripSourceMotion&, const DripPose&, const glm::dvec3& wind_mps);
 
  private:

@@ -229,7 +229,8 @@ TEST(Drips, TheyHitAtWhatTheFallGivesAndNotAtTerminalSpeed) {
       EXPECT_NEAR(l.place_m.y, 0.0, 1e-4);
       EXPECT_LT(speed, free);
       // V^2 (1 - exp(-2 g h / V^2)) of the energy, independently of how it was stepped.
-      EXPECT_NEAR(speed, terminal * std::sqrt(1.0 - std::exp(-2.0 * 9.81 * height / (terminal * terminal))), 1e-3 * speed);
+      EXPECT_NEAR(speed, terminal * std::sqrt(1.0 - std::exp(-2.0 * 9.81 * height / (terminal * terminal))),
+                  1e-3 * speed);
       if (height == 0.5) {
         EXPECT_GT(speed, 0.95 * free);
       }
