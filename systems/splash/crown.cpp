@@ -78,7 +78,8 @@ float smooth(float low, float high, float x) {
 // The rim's waves, which the jets grow from.
 float rim_wave(bool film, float turn) {
   const float jets = film ? jets_of_film : jets_of_corona;
-  return 0.6f * std::sin(turn * jets) + 0.4f * std::sin(turn * 5.0f + 1.3f);
+  return 0.25f * std::sin(turn * jets) + 0.45f * std::sin(turn * 5.0f + 1.3f) + 0.5f * std::sin(turn * 2.0f + 0.4f) +
+         0.35f * std::sin(turn * 9.0f + 2.6f);
 }
 
 }  // namespace
@@ -101,7 +102,7 @@ std::vector<float> crown_picture(bool film, float elevation_deg, float phase) {
     const float turn = tau * (a + 0.5f) / around;
     const glm::vec3 out(std::cos(turn), 0.0f, std::sin(turn));
     const float wave = rim_wave(film, turn);
-    const float high = now.height * (1.0f + 0.12f * wave);
+    const float high = now.height * (1.0f + 0.16f * wave);
     const float ring = now.radius * (1.0f + 0.03f * std::sin(turn * 3.0f));
     for (int k = 0; k < upwards; ++k) {
       const float s = (k + 0.5f) / upwards;
@@ -122,23 +123,25 @@ std::vector<float> crown_picture(bool film, float elevation_deg, float phase) {
   const int jets = film ? jets_of_film : jets_of_corona;
   for (int j = 0; j < jets; ++j) {
     const std::uint32_t key = std::uint32_t(j) + (film ? 0u : 100u);
-    const float turn = tau * (j + 0.25f + 0.5f * (rand_of(key, 1) - 0.5f)) / jets;
+    const float turn = tau * (j + 0.25f + 1.3f * (rand_of(key, 1) - 0.5f)) / jets;
     const glm::vec3 out(std::cos(turn), 0.0f, std::sin(turn));
-    const float strength = 0.5f + rand_of(key, 2);
-    const float high = now.height * (1.0f + 0.12f * rim_wave(film, turn));
+    const float chance = rand_of(key, 2), strength = 0.3f + 1.25f * chance * chance;
+    const float high = now.height * (1.0f + 0.16f * rim_wave(film, turn));
     const glm::vec3 foot = out * (now.radius + lean * high) + glm::vec3(0, high, 0);
-    const glm::vec3 way = glm::normalize(out * (film ? 0.55f : 0.9f) + glm::vec3(0, film ? 0.85f : 0.7f, 0));
+    const glm::vec3 way = glm::normalize(out * ((film ? 0.35f : 0.7f) + 0.5f * rand_of(key, 11)) +
+                                          glm::vec3(0, film ? 0.85f : 0.7f, 0) +
+                                          0.3f * (rand_of(key, 12) - 0.5f) * glm::vec3(-out.z, 0, out.x));
     const float length = (film ? 0.26f : 0.22f) * strength * smooth(0.04f, 0.3f, phase) * (1.0f - smooth(0.55f, 0.85f, phase));
     constexpr int beads = 9;
     for (int b = 0; b < beads && length > 0.01f; ++b) {
       const float s = (b + 0.5f) / beads;
-      canvas.ball(foot + way * (length * s), 0.030f * (1.0f - 0.6f * s) * (0.6f + 0.4f * strength));
+      canvas.ball(foot + way * (length * s), 0.024f * (1.0f - 0.65f * s) * (0.55f + 0.45f * strength));
     }
     for (int d = 0; d < 2; ++d) {
       const float leaves = 0.22f + 0.28f * d + 0.1f * rand_of(key, 3 + d);
       const float since = phase - leaves;
       if (since < 0.0f) {
-        if (d == 0 && length > 0.02f) canvas.ball(foot + way * length, 0.034f * strength);  // the jet's head
+        if (d == 0 && length > 0.02f) canvas.ball(foot + way * length, 0.03f * std::sqrt(strength));  // the jet's head
         continue;
       }
       const CrownShape then = crown_shape(film, leaves);

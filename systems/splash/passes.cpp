@@ -147,7 +147,8 @@ void list_random(SplashGpuState& gpu, PassContext& context, const Limits& limits
   for (RainLayerGpu& one : classes) one.expected.x = static_cast<float>(one.expected.x / per_m2_s);
   const double side = 2.0 * limits.reach_m, truly = per_m2_s * side * side * period_s;
   // About a sixth of them is in view, and a quarter of the time of each is its splash's.
-  const double places = std::max(1.0, std::floor(std::min(truly, 24.0 * limits.most)));
+  const double most = gpu.software && limits.most < frame.splashes->most_splashes ? 0.3 * limits.most : limits.most;
+  const double places = std::max(1.0, std::floor(std::min(truly, 24.0 * most)));
   upload(gpu.layers, std::span<const RainLayerGpu>(classes));
   bind(RAIN_LAYERS_BINDING, gpu.layers);
   const Program& program = context.program(shader_of(gpu, "random"));

@@ -23,7 +23,11 @@ void main() {
   vec2 at = fract(one.xy - square.yz / square.x + 0.5) - 0.5;  // about the camera
   at *= square.x;
   if (one.w >= chances.x || length(at) > mix(0.85, 1.0, own.w) * reach.x) return;
-  // In view? Heights are not known yet; ahead of the camera and not too far aside.
+  // Not ahead of the camera at any height at which the ground may be.
+  vec4 clip_low = frame.view_projection * vec4(at.x, -reach.x, at.y, 1.0);
+  vec4 clip_high = frame.view_projection * vec4(at.x, reach.x, at.y, 1.0);
+  if (max(clip_low.w, clip_high.w) < 0.0 || (clip_low.x > 1.1 * clip_low.w && clip_high.x > 1.1 * clip_high.w) ||
+      (clip_low.x < -1.1 * clip_low.w && clip_high.x < -1.1 * clip_high.w)) return;
   uint k = 0u;
   while (k + 1u < layer_count && layers[k].expected.x <= one.z) k += 1u;
   RainLayerGpu layer = layers[k];
