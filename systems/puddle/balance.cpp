@@ -20,11 +20,12 @@ double root(double low, double high, double start, Value&& value, Slope&& slope)
   double x = std::clamp(start, low, high);
   for (int i = 0; i < 200; ++i) {
     const double v = value(x);
+    const double newton = v / slope(x);
+    if (std::abs(newton) <= 4e-16 * std::abs(x)) return x;  // as near as numbers lie
     (v > 0.0 ? high : low) = x;
-    double next = x - v / slope(x);
-    if (!(next > low && next < high)) next = 0.5 * (low + high);
-    if (v == 0.0 || std::abs(next - x) <= 2e-16 * std::abs(x) || next == low || next == high) return next;
-    x = next;
+    const double next = x - newton;
+    x = next > low && next < high ? next : 0.5 * (low + high);
+    if (x <= low || x >= high) return x;
   }
   return x;
 }
