@@ -18,10 +18,9 @@ layout(location = 3) out vec3 fin_lamps;
 void main() {
   bool second = (gl_VertexID & 1) == 1, tip = gl_VertexID >= 2;
   vec4 base = second ? in_b_depth : in_a_depth, normal = second ? in_b_normal : in_a_normal;
-  // As long as reaches four heights of the mist, whatever its lean.
-  float reach = length_m > 0.0 ? length_m : 4.0 * catcher.mist.y / max(normal.y, 0.4);
+  float reach = length_m > 0.0 ? length_m : 4.0 * catcher.mist.y;
   fin_place = base.xyz + (tip ? reach : 0.0) * normal.xyz;
-  fin_coordinate = vec2(normal.w, tip ? (length_m > 0.0 ? reach : reach * max(normal.y, 0.1)) : 0.0);
+  fin_coordinate = vec2(normal.w, tip ? reach : 0.0);
   // Of the face that the rain strikes: none under a roof, more to windward.
   float struck = use_occlusion ? min(deposit(base.xyz + in_struck.xyz * 0.02, in_struck.xyz) / max(in_struck.y, 0.3), 2.0)
                                : clamp(in_struck.y * 4.0, 0.0, 1.0);

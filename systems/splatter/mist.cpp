@@ -24,7 +24,7 @@ Cloud cloud_of(double diameter_mm) {
     const double section = d.weight * 0.25 * pi * d.diameter_mm * d.diameter_mm * 1e-6;
     constexpr double step_s = 1e-3;
     fly({d.speed_mps * std::cos(d.elevation_rad), d.speed_mps * std::sin(d.elevation_rad), 0.0}, d.diameter_mm, step_s,
-        [&](const glm::dvec3& p, const glm::dvec3& v) {
+        0.0, [&](const glm::dvec3& p, const glm::dvec3& v) {
           cloud.column_m2_s += section * step_s;
           cloud.lift += section * step_s * p.y;
           cloud.size += section * step_s * d.diameter_mm;
@@ -80,20 +80,20 @@ void droplets_of(double diameter_mm, double normal_speed_mps, double droplets,
   }
 }
 
-void fly(const glm::dvec3& velocity_mps, double diameter_mm, double step_s,
+void fly(const glm::dvec3& velocity_mps, double diameter_mm, double step_s, double lowest_m,
          const std::function<bool(const glm::dvec3&, const glm::dvec3&)>& at) {
   const double terminal = std::max(terminal_speed_mps(diameter_mm), 1e-3);
   glm::dvec3 p(0.0), v = velocity_mps;
   for (int i = 0; i < 4000; ++i) {
-    // Quadratic drag, implicit, so that no step is too long; also upwards, where step_velocity's rate, which is made for
-    // falling, is up to twice too large.
+    // Quadratic drag, implicit, so that no step is too long; also upwards, where step_velocity's rate, which is made
+    // for falling, is up to twice too large.
     const double drag = gravity_mps2 / (terminal * terminal) * glm::length(v);
     const glm::dvec3 next = (v - glm::dvec3(0.0, gravity_mps2 * step_s, 0.0)) / (1.0 + drag * step_s);
     const glm::dvec3 middle = 0.5 * (v + next);
     if (!at(p + 0.5 * step_s * middle, middle)) return;
     p += step_s * middle;
     v = next;
-    if (p.y < 0.0 && v.y < 0.0) return;
+    if (p.y < lowest_m && v.y < 0.0) return;
   }
 }
 

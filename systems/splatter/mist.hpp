@@ -30,9 +30,9 @@ constexpr int droplet_sizes = 6, droplet_elevations = 4;
 void droplets_of(double diameter_mm, double normal_speed_mps, double droplets,
                  const std::function<void(const Droplet&)>&);
 
-// Flies a droplet with drag in still air from the origin until it is below the surface again: along the way out,
-// calls at(position, velocity, seconds) for each step. y is up.
-void fly(const glm::dvec3& velocity_mps, double diameter_mm, double step_s,
+// Flies a droplet with drag in still air from the origin until it falls below a height (0: the surface it comes from):
+// calls at(position, velocity) in the middle of each step, until that says false. y is up.
+void fly(const glm::dvec3& velocity_mps, double diameter_mm, double step_s, double lowest_m,
          const std::function<bool(const glm::dvec3& position, const glm::dvec3& velocity)>& at);
 
 // Sums over all classes. Millions of droplets of a downpour are a cloud whose density falls about exponentially with

@@ -77,8 +77,10 @@ struct Around {
   bool interior;  // surface at about the same height all round
 };
 
-Around around(const CatcherShape& s, const glm::vec3& p) {
-  const glm::vec2 c = cell_of(s, p);
+// face: of the surface at p, whose plane tells what heights are "about the same".
+Around around(const CatcherShape& s, const glm::vec3& p, const glm::vec3& face) {
+  const glm::vec2 c = cell_of(s, p),
+                  cell_m = glm::vec2(s.high_m.x - s.low_m.x, s.high_m.z - s.low_m.z) / float(catcher_cells);
   Around found{true, true};
   float highest = -1e30f;
   for (int j = -2; j <= 2; ++j)
@@ -86,10 +88,10 @@ Around around(const CatcherShape& s, const glm::vec3& p) {
       const int x = int(std::floor(c.x)) + i, z = int(std::floor(c.y)) + j;
       const bool inside = x >= 0 && z >= 0 && x < catcher_cells && z < catcher_cells;
       const glm::vec2 cell = inside ? s.heights[static_cast<std::size_t>(z * catcher_cells + x)] : glm::vec2(0.0f);
-      if (cell.y <= 0.0f || std::abs(cell.x - p.y) > 0.05f) found.interior = false;
+      const float plane = p.y - (face.x * i * cell_m.x + face.z * j * cell_m.y) / std::max(face.y, 0.2f);
+      if (cell.y <= 0.0f || std::abs(cell.x - plane) > 0.06f) found.interior = false;
       if (cell.y > 0.0f && std::abs(i) < 2 && std::abs(j) < 2) highest = std::max(highest, cell.x);
     }
-  // Steep sides span much height within a cell: what lies at most so far below the top of the mesh still counts.
   found.topmost = highest < p.y + 0.03f;
   return found;
 }
@@ -115,8 +117,10 @@ void find_edges(CatcherShape& s, const std::vector<Face>& faces) {
     const glm::vec3 second = open ? -first : faces[sides.second].normal;
     if (!open && glm::dot(first, second) > 0.99999f) continue;  // flat: never an outline
     if (std::max(first.y, second.y) < 0.05f) continue;          // rain strikes neither face
-    const Around where = around(s, 0.5f * (s.positions[a] + s.positions[b]));
-    if (!where.topmost || (open && where.interior)) continue;
+    const glm::vec3 struck = first.y >= second.y ? first : second;
+    const Around where = around(s, 0.5f * (s.positions[a] + s.positions[b]), struck);
+    // An open edge is an outline where a sheet ends, not where a patch lies on something.
+    if (!where.topmost || (open && (where.interior || struck.y < 0.3f))) continue;
     s.edges.push_back({a, b, first, second});
   }
 }

@@ -43,7 +43,8 @@ Model box_model(const glm::vec3& half, float bottom_m) {
         vertex.normal[axis] = side ? 1.0f : -1.0f;
         p.vertices.push_back(vertex);
       }
-      for (const std::uint32_t i : {0u, 1u, 2u, 0u, 2u, 3u}) p.indices.push_back(first + (side || i == 0u ? i : 4u - i));
+      for (const std::uint32_t i : {0u, 1u, 2u, 0u, 2u, 3u})
+        p.indices.push_back(first + (side || i == 0u ? i : 4u - i));
     }
   p.bounds_min_m = low;
   p.bounds_max_m = high;
@@ -58,25 +59,23 @@ Model body_model(int around, int along) {
     const float v = -1.0f + 2.0f * static_cast<float>(j) / static_cast<float>(along);
     const auto power = [](float x, float e) { return std::copysign(std::pow(std::abs(x), e), x); };
     const float full = std::pow(std::max(1.0f - std::pow(std::abs(v), 4.0f), 0.0f), 0.5f);
-    return glm::vec3(0.8f * power(std::cos(u), 0.5f) * (0.35f + 0.65f * full), 0.25f + 1.15f * std::pow(std::sin(u), 0.5f) * full,
-                     2.0f * v);
+    return glm::vec3(0.8f * power(std::cos(u), 0.5f) * (0.35f + 0.65f * full),
+                     0.25f + 1.15f * std::pow(std::sin(u), 0.5f) * full, 2.0f * v);
   };
-  const float d = 1e-3f;
-  (void)d;
   for (int j = 0; j <= along; ++j)
     for (int i = 0; i <= around; ++i) {
       Vertex vertex;
       vertex.position_m = place(i, j);
       const glm::vec3 du = place(std::min(i + 1, around), j) - place(std::max(i - 1, 0), j);
       const glm::vec3 dv = place(i, std::min(j + 1, along)) - place(i, std::max(j - 1, 0));
-      const glm::vec3 n = glm::cross(dv, du);
+      const glm::vec3 n = glm::cross(du, dv);
       vertex.normal = glm::length(n) > 1e-9f ? glm::normalize(n) : glm::vec3(0.0f, 0.0f, j == 0 ? -1.0f : 1.0f);
       p.vertices.push_back(vertex);
     }
   for (int j = 0; j < along; ++j)
     for (int i = 0; i < around; ++i) {
       const auto a = static_cast<std::uint32_t>(j * (around + 1) + i), b = a + static_cast<std::uint32_t>(around) + 1;
-      for (const std::uint32_t k : {a, b, b + 1, a, b + 1, a + 1}) p.indices.push_back(k);
+      for (const std::uint32_t k : {a, b + 1, b, a, a + 1, b + 1}) p.indices.push_back(k);
     }
   p.bounds_min_m = {-0.8f, 0.25f, -2.0f};
   p.bounds_max_m = {0.8f, 1.4f, 2.0f};
@@ -120,6 +119,7 @@ Result<std::unique_ptr<SplatterStage>> SplatterStage::make(bool software_gl, std
   scene.execute = [self](PassContext& context) {
     clear_texture(context.texture("colour"),
                   {self->background_cd_m2.x, self->background_cd_m2.y, self->background_cd_m2.z, 1.0f});
+    self->depth_ = context.texture("depth").id;
     static constexpr std::array<std::string_view, 1> colours{"normal"};
     context.bind_framebuffer(colours, "depth");
     const float zero[4] = {0, 0, 0, 0};
@@ -134,17 +134,19 @@ Result<std::unique_ptr<SplatterStage>> SplatterStage::make(bool software_gl, std
     glDisable(GL_CULL_FACE);
   };
   nlohmann::json table;
-  table["resources"] = {{"depth", {{"format", "depth32f"}}},
-                        {"normal", {{"format", "rgba16"}}},
-                        {"colour", {{"format", "rgba16f"}}},
-                        {"map", {{"format", "depth32f"}, {"width", 512}, {"height", 512}, {"layers", 1}, {"persistent", true}}}};
+  table["resources"] = {
+      {"depth", {{"format", "depth32f"}}},
+      {"normal", {{"format", "rgba16"}}},
+      {"colour", {{"format", "rgba16f"}}},
+      {"map", {{"format", "depth32f"}, {"width", 512}, {"height", 512}, {"layers", 1}, {"persistent", true}}}};
   table["passes"] = nlohmann::json::array();
   table["passes"].push_back({{"pass", "stage_scene"}, {"depth", "depth"}, {"normal", "normal"}, {"colour", "colour"}});
   nlohmann::json splatter = {{"pass", "splatter"}, {"colour", "colour"}, {"depth", "depth"}, {"normal", "normal"}};
   nlohmann::json halos = {{"pass", "halos"}, {"colour", "colour"}, {"depth", "depth"}};
   for (const PassOffer& offer : more) {
     if (offer.name != "occlusion_map") continue;
-    table["passes"].push_back({{"pass", "occlusion_map"}, {"occlusion_map", "map"}, {"parameters", {{"side_m", 16.0}}}});
+    table["passes"].push_back(
+        {{"pass", "occlusion_map"}, {"occlusion_map", "map"}, {"parameters", {{"side_m", 16.0}}}});
     splatter["occlusion_map"] = halos["occlusion_map"] = "map";
   }
   table["passes"].push_back(splatter);
@@ -154,8 +156,7 @@ Result<std::unique_ptr<SplatterStage>> SplatterStage::make(bool software_gl, std
   for (PassOffer& offer : more) offers.push_back(std::move(offer));
   offers.push_back(std::move(scene));
   stage->graph_ = std::make_unique<Graph>(stage->library_, std::move(offers));
-  if (auto loaded = stage->graph_->load_table(table, "the stage of splatter"); !loaded)
-    return tl::unexpected(loaded.error());
+  stage->table_ = std::move(table);
   stage->frame.scene = &stage->scene_;
   stage->frame.sky.zenith_cd_m2 = stage->frame.sky.horizon_cd_m2 = glm::vec3(0.0f);
   return stage;
@@ -179,6 +180,12 @@ Result<void> SplatterStage::draw() {
   splatter->catchers = marks;
   if (frame.rain) splatter->mist = splash_mist(*frame.rain);
   frame.splatter = frame.rain && !marks.empty() ? std::shared_ptr<const FrameSplatter>(splatter) : nullptr;
+  if (loaded_steps_ != steps) {
+    for (nlohmann::json& pass : table_["passes"])
+      if (pass["pass"] == "halos") pass["parameters"] = {{"steps", steps}};
+    if (auto loaded = graph_->load_table(table_, "the stage of splatter"); !loaded) return loaded;
+    loaded_steps_ = steps;
+  }
   finish_frame(frame);
   gpu_.upload(frame);
   auto drawn = graph_->execute(frame, frame.width, frame.height, timer_);
@@ -201,10 +208,20 @@ Result<std::vector<double>> SplatterStage::time(std::string_view pass, int frame
   return all;
 }
 
+std::vector<float> SplatterStage::read_distances() const {
+  std::vector<float> depth(std::size_t(output_->width) * output_->height);
+  glMemoryBarrier(GL_TEXTURE_UPDATE_BARRIER_BIT);
+  glGetTextureImage(depth_, 0, GL_DEPTH_COMPONENT, GL_FLOAT, static_cast<GLsizei>(depth.size() * sizeof(float)),
+                    depth.data());
+  for (float& d : depth) d = d > 0.0f ? frame.camera.near_m / d : INFINITY;
+  return depth;
+}
+
 std::vector<float> SplatterStage::read_light() const {
   std::vector<float> light(std::size_t(output_->width) * output_->height * 4);
   glMemoryBarrier(GL_TEXTURE_UPDATE_BARRIER_BIT);
-  glGetTextureImage(output_->id, 0, GL_RGBA, GL_FLOAT, static_cast<GLsizei>(light.size() * sizeof(float)), light.data());
+  glGetTextureImage(output_->id, 0, GL_RGBA, GL_FLOAT, static_cast<GLsizei>(light.size() * sizeof(float)),
+                    light.data());
   return light;
 }
 

@@ -3,6 +3,7 @@
 // Charts, benchmarks and tests use it. Needs a current OpenGL context.
 
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -37,11 +38,14 @@ class SplatterStage {
   // Draws so many frames and gives milliseconds of a pass.
   Result<std::vector<double>> time(std::string_view pass, int frames);
   std::vector<float> read_light() const;  // rgba, cd/m2, row 0 at the bottom
+  // Axial metres of what stands in each pixel; infinite where there is nothing.
+  std::vector<float> read_distances() const;
   std::vector<PassReport> report() const { return graph_->report(); }
 
   Frame frame;
-  std::vector<Catcher> marks;           // as add() made them: change their settings
+  std::vector<Catcher> marks;  // as add() made them: change their settings
   glm::vec3 background_cd_m2{0.0f};
+  int steps = 0;  // of the layer; 0: by the device. Before the first draw()
 
  private:
   explicit SplatterStage(bool software_gl) : timer_(software_gl) {}
@@ -52,6 +56,9 @@ class SplatterStage {
   GpuScene scene_;
   std::vector<std::shared_ptr<const Model>> models_;
   const Texture* output_ = nullptr;
+  GLuint depth_ = 0;
+  nlohmann::json table_;
+  int loaded_steps_ = -1;
 };
 
 void look(FrameCamera&, const glm::vec3& from_m, const glm::vec3& at_m, float fov_deg);
