@@ -17,11 +17,10 @@ local resources = {
   water_mask = { format = "rg8" },
   water      = { format = "rg16f" },             -- mm of standing water, mm of film
   puddle_list = { format = "none" },
-  ripples    = { format = "rgba16f", width = 256, height = 256, layers = 3, mips = 2,
-                 persistent = true },                      -- of the shared tile, of the near one, of drips
+  ripples    = { format = "rgba16f", width = 256, height = 256, layers = 3, mips = 2 },  -- shared, near, drips
   overhead   = { format = "rgba16f", width = 128, height = 128, persistent = true },  -- light from above, for splashes
   mirrors    = { format = "rgba16f", scale = 1 / 2, layers = 2, mips = 6 },
-  probes     = { format = "rgba16f", width = 448, height = 65, layers = 4, persistent = true },
+  probes     = { format = "rgba16f", width = 448, height = 65, layers = 4 },
   reflections = { format = "rgba16f", scale = 1 / 2 },
   lamp_highlights = { format = "none" },  -- connected, pass shade leaves them to pass reflections where that draws lamps
 

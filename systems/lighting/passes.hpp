@@ -13,7 +13,7 @@ struct LightingState;  // systems/lighting/state.hpp
 
 // shadow_maps:  shadow_atlas (rgba32f 2048x2048, persistent), redrawn where a caster or the scene changed.
 // environment:  environment (rgba16f 448x65): the captured surroundings, read by environment.glsl.
-// probes:       probes (rgba16f 448x65, 4 layers, persistent): what moving objects mirror (frame.mirrors), read by
+// probes:       probes (rgba16f 448x65, 4 layers): what moving objects mirror (frame.mirrors), read by
 //               systems/mirror/probe.glsl; binds its block.
 // light_lists:  light_lists (rgba32ui, scale 1/8): the lights that each tile of pixels sees; also binds the block of
 //               chosen lights (CHOSEN_LIGHTS_BINDING) for the passes after it.

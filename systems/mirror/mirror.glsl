@@ -91,7 +91,7 @@ vec4 mirror_lobe(int layer, vec3 place, vec3 direction, float roughness) {
 vec4 mirror_radiance(vec3 place, vec3 normal, float roughness, vec3 mirror_direction) {
   float water = mirror_applies(0, place, normal), pane = mirror_applies(1, place, normal);
   int layer = water >= pane ? 0 : 1;
-  float applies = max(water, pane) * (1.0 - smoothstep(0.45, 0.7, roughness));
+  float applies = max(water, pane) * (1.0 - smoothstep(0.25, 0.45, roughness));
   if (applies <= 0.0) return vec4(0.0);
   vec4 seen = mirror_lobe(layer, place, mirror_direction, roughness);
   return vec4(seen.rgb, seen.a * applies);

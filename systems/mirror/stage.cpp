@@ -53,9 +53,9 @@ Result<std::unique_ptr<MirrorStage>> MirrorStage::make(std::vector<PassOffer> pa
       "emissive": {"format": "r11f_g11f_b10f"},
       "shadow_atlas": {"format": "rgba32f", "width": 2048, "height": 2048, "persistent": true},
       "environment": {"format": "rgba16f", "width": 448, "height": 65},
-      "probes": {"format": "rgba16f", "width": 448, "height": 65, "layers": 4, "persistent": true},
+      "probes": {"format": "rgba16f", "width": 448, "height": 65, "layers": 4},
       "light_lists": {"format": "rgba32ui", "scale": 0.125},
-      "mirrors": {"format": "rgba16f", "layers": 2, "mips": 6, "persistent": true},
+      "mirrors": {"format": "rgba16f", "layers": 2, "mips": 6},
       "picture": {"format": "rgba8", "width": 1, "height": 1}},
     "passes": [
       {"pass": "gbuffer", "depth": "depth", "albedo": "albedo", "normal": "normal", "emissive": "emissive"},
