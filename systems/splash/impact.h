@@ -47,7 +47,8 @@ IMPACT_FN float splash_on_smooth(float diameter, float speed) {
 // film: m of water on the surface, standing or running; roughness: perceptual.
 IMPACT_FN float splash_number(float diameter, float speed, float film, float roughness) {
   if (film >= 0.1f * diameter) return splash_on_film(diameter, speed, film);
-  if (roughness < SMOOTH_ROUGHNESS) return splash_on_smooth(diameter, speed);
+  // A wet street is smooth to the eye, too: only where the film is next to nothing is it the polish that counts.
+  if (roughness < SMOOTH_ROUGHNESS && film < 0.02f * diameter) return splash_on_smooth(diameter, speed);
   if (film > 2e-6f) return splash_on_wetted(diameter, speed);
   return splash_on_dry(diameter, speed);
 }
