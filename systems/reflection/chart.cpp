@@ -38,10 +38,11 @@ double luminance(const glm::vec4& c) {
   return 0.2126 * c.x + 0.7152 * c.y + 0.0722 * c.z;
 }
 Difference difference(const std::vector<glm::vec4>& picture, const std::vector<glm::vec4>& truth) {
+  constexpr double shown = 1.0 / (1.2 * 8.0);  // cd/m2 to linear output at EV 3: what 0.01 is meant in
   double squares = 0.0, mean = 0.0, true_mean = 0.0, count = 0.0;
   for (std::size_t i = 0; i < truth.size(); ++i) {
     if (truth[i].w <= 0.0f) continue;
-    const double a = picture.empty() ? 0.0 : luminance(picture[i]), r = luminance(truth[i]);
+    const double a = picture.empty() ? 0.0 : shown * luminance(picture[i]), r = shown * luminance(truth[i]);
     squares += (a - r) * (a - r) / (r * r + 0.01);
     mean += a, true_mean += r, count += 1.0;
   }

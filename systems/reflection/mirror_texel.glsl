@@ -1,5 +1,5 @@
-// A texel of the half-size buffer stands for the picture's pixel 2 * texel, with the mean normal of its block of four
-// and a roughness that holds what the mean leaves out: ripples finer than a pixel become a wider lobe instead of a flicker
+// A texel of the half-size buffer stands for the picture's pixel 2 * texel, with the mean normal of four pixels and a
+// roughness that holds what the mean leaves out: ripples finer than a pixel become a wider lobe instead of a flicker
 // (Toksvig 2005; Tokuyoshi and Kaplanyan 2019, "Improved Geometric Specular Antialiasing").
 #ifndef SYSTEMS_REFLECTION_MIRROR_TEXEL_GLSL
 #define SYSTEMS_REFLECTION_MIRROR_TEXEL_GLSL
@@ -13,7 +13,7 @@ Surface mirror_surface(ivec2 texel, float depth) {
   vec3 sum = s.normal;
   float count = 1.0;
   for (int i = 1; i < 4; ++i) {
-    ivec2 other = min(texel + ivec2(i & 1, i >> 1), ivec2(frame.size.xy) - 1);
+    ivec2 other = min(texel + 2 * ivec2(i & 1, i >> 1), ivec2(frame.size.xy) - 1);
     vec3 n = unit_from_octahedral(texelFetch(gbuffer_normal, other, 0).xy * 2.0 - 1.0);
     bool same = abs(read_depth(other) - depth) < 0.04 * depth && dot(n, s.normal) > 0.5;
     sum += same ? n : vec3(0.0);

@@ -26,8 +26,8 @@ uniform float edge_exponent;    // f_o
 uniform float published_edges;  // 1: k_a for all rungs
 
 // The four texels about a pixel, each as far as it belongs to the same surface: no light leaks over edges.
-vec4 reflection_at(ivec2 texel, float depth, vec3 normal) {
-  vec2 place = (vec2(texel) - 0.0) * 0.5;  // texel 2k of the picture is texel k
+vec4 reflection_at(ivec2 texel, float depth) {
+  vec2 place = vec2(texel) * 0.5;  // texel 2k of the picture is texel k
   ivec2 first = ivec2(floor(place));
   vec2 part = place - vec2(first);
   ivec2 last = textureSize(reflections, 0) - 1;
@@ -38,8 +38,7 @@ vec4 reflection_at(ivec2 texel, float depth, vec3 normal) {
     float near = (step.x == 1 ? part.x : 1.0 - part.x) * (step.y == 1 ? part.y : 1.0 - part.y) + 0.2;
     ivec2 stands = picture_texel(from);
     float other = read_depth(stands);
-    vec3 n = unit_from_octahedral(texelFetch(gbuffer_normal, stands, 0).xy * 2.0 - 1.0);
-    float same = max(1.0 - abs(other - depth) / (0.05 * depth), 0.0) * max(dot(n, normal) * 4.0 - 3.0, 0.0) + 1e-4;
+    float same = max(1.0 - abs(other - depth) / (0.05 * depth), 0.0) + 1e-4;
     sum += texelFetch(reflections, from, 0) * (near * same);
     weights += near * same;
   }
@@ -51,7 +50,7 @@ void lay_over(ivec2 texel, float depth, float mirrors) {
   Facing at = facing_of(surface, relative_position(vec2(texel) + 0.5, depth));
   vec3 reflected = mirrored_share(at, surface.roughness) * mirror_open(at, surface.roughness, surface.occlusion);
   vec3 environment = environment_radiance(at.mirror, surface.roughness) * frame.sky_zenith.w;
-  vec4 r = reflection_at(texel, depth, surface.normal);
+  vec4 r = reflection_at(texel, depth);
   vec3 change = r.rgb - r.a * environment;
   // Artists' control of edges: f = (1 - n.v)^f_o, k_a = saturate(1 - f^2).
   float k_a = edge_attenuation(at.n_dot_v, edge_exponent);
@@ -71,12 +70,20 @@ void lay_over(ivec2 texel, float depth, float mirrors) {
 #endif
   change += (1.0 - toyshop_share) * published_edges * (k_a - 1.0) * (change + environment);
 #ifdef WITH_PROBES
-  vec4 probe = probe_radiance(at.place, at.mirror, surface.roughness);
-  change = mix(change, probe.rgb - environment, probe.a);
+  bool near = false;
+  for (int i = 0; i < int(probes.counts.x); ++i)
+    near = near || distance(at.place, probes.place_radius[i].xyz) < probes.place_radius[i].w;
+  for (int once = 0; once < (near ? 1 : 0); ++once) {
+    vec4 probe = probe_radiance(at.place, at.mirror, surface.roughness);
+    change = mix(change, probe.rgb - environment, probe.a);
+  }
 #endif
 #ifdef WITH_MIRRORS
-  vec4 mirrored = mirror_radiance(at.place, at.normal, surface.roughness, at.mirror);
-  change = mix(change, mirrored.rgb - environment, mirrored.a * planar_share);
+  bool flat_here = max(mirror_applies(0, at.place, at.normal), mirror_applies(1, at.place, at.normal)) > 0.0;
+  for (int once = 0; once < (flat_here ? 1 : 0); ++once) {
+    vec4 mirrored = mirror_radiance(at.place, at.normal, surface.roughness, at.mirror);
+    change = mix(change, mirrored.rgb - environment, mirrored.a * planar_share);
+  }
 #endif
   vec4 light = imageLoad(colour, texel);
   imageStore(colour, texel, vec4(max(light.rgb + mirrors * reflected * change, vec3(0.0)), light.a));

@@ -82,9 +82,9 @@ vec4 screen_space(Facing at, Lobe lobe, float jitter) {
     vec2 met = march(from, way, jitter, uv);
     if (met.x < 0.0 || met.y <= 0.0) continue;
     // Half the angles that the lobe fills across the plane of incidence, and that one of the rays stands for in it.
-    float across = 2.0 * at.alpha * max(at.n_dot_v, 0.05), within = 2.0 * at.alpha / float(ray_count);
+    float across = 2.0 * at.alpha * max(at.n_dot_v, 0.05), within = 4.0 * at.alpha / float(ray_count);
     vec3 place = from + way * met.x;
-    float pixels = met.x * max(across, 0.5 * within) / max(length(place), 0.1) * frame.lens.z;
+    float pixels = met.x * max(across, within) / max(length(place), 0.1) * frame.lens.z;
     float level = clamp(log2(max(0.5 * pixels, 1.0)), 0.0, 6.0);
     sum += vec4(textureLod(picture_pyramid, uv, level).rgb, 1.0) * (weight * met.y);
   }
