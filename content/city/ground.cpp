@@ -185,19 +185,21 @@ void add_pavement(Scene& scene, int sx, int sz, int parent) {
 }
 
 // A painted rectangle that follows the road's shape, 4 mm proud of it.
-void paint_on_road(Mesh& mesh, glm::vec2 low, glm::vec2 high, float cell_m, glm::vec3 tint) {
+void paint_on_road(Mesh& mesh, const StandingWater& water, glm::vec2 low, glm::vec2 high, float cell_m,
+                   glm::vec3 tint) {
   grid(mesh.primitives[Mat::markings], steps(low.x, high.x, cell_m), steps(low.y, high.y, cell_m),
        [&](float x, float z) {
          Vertex v{};
          v.position_m = {x, carriageway_height_m(x, z) + 0.006f, z};
          v.normal = {0.0f, 1.0f, 0.0f};
          v.uv = glm::vec2(x, z) * 0.37f;
+         v.puddle_depth_m = water.depth_at(x, z);  // of the road: paint is thin
          v.colour = glm::min(tint, glm::vec3(1.0f));
          return v;
        });
 }
 
-void add_markings(Scene& scene, int parent) {
+void add_markings(Scene& scene, const StandingWater& water, int parent) {
   Mesh mesh;
   mesh.name = "road_markings";
   const glm::vec3 white(1.0f, 0.98f, 0.92f);
@@ -206,25 +208,26 @@ void add_markings(Scene& scene, int parent) {
     for (int k = 0; k < 9; ++k) {  // zebra across the main street
       const float x = -4.4f + 1.1f * static_cast<float>(k);
       const float z = sf * 8.6f;
-      paint_on_road(mesh, {x - 0.27f, z - 1.5f}, {x + 0.27f, z + 1.5f}, 0.55f, white);
+      paint_on_road(mesh, water, {x - 0.27f, z - 1.5f}, {x + 0.27f, z + 1.5f}, 0.55f, white);
     }
     for (int k = 0; k < 7; ++k) {  // and across the lane
       const float z = -3.3f + 1.1f * static_cast<float>(k);
       const float x = sf * 9.6f;
-      paint_on_road(mesh, {x - 1.3f, z - 0.27f}, {x + 1.3f, z + 0.27f}, 0.55f, white);
+      paint_on_road(mesh, water, {x - 1.3f, z - 0.27f}, {x + 1.3f, z + 0.27f}, 0.55f, white);
     }
     // Stop lines, on the side that drives up to the crossing (right-hand traffic).
-    paint_on_road(mesh, {s > 0 ? 0.15f : -4.8f, sf * 11.0f - 0.2f}, {s > 0 ? 4.8f : -0.15f, sf * 11.0f + 0.2f}, 0.6f,
-                  white);
+    paint_on_road(mesh, water, {s > 0 ? 0.15f : -4.8f, sf * 11.0f - 0.2f}, {s > 0 ? 4.8f : -0.15f, sf * 11.0f + 0.2f},
+                  0.6f, white);
     for (int k = 0; k < 10; ++k) {  // middle line
       const float z = sf * (14.0f + 4.6f * static_cast<float>(k));
-      paint_on_road(mesh, {-0.07f, std::min(z, z + sf * 2.4f)}, {0.07f, std::max(z, z + sf * 2.4f)}, 0.8f, white);
+      paint_on_road(mesh, water, {-0.07f, std::min(z, z + sf * 2.4f)}, {0.07f, std::max(z, z + sf * 2.4f)}, 0.8f,
+                    white);
     }
     for (int side : {-1, 1}) {  // parking bays
       for (int k = 0; k < 7; ++k) {
         const float z = sf * (14.5f + 6.0f * static_cast<float>(k));
         const float x = static_cast<float>(side) * 3.95f;
-        paint_on_road(mesh, {x - 1.0f, z - 0.05f}, {x + 1.0f, z + 0.05f}, 0.7f, white * 0.9f);
+        paint_on_road(mesh, water, {x - 1.0f, z - 0.05f}, {x + 1.0f, z + 0.05f}, 0.7f, white * 0.9f);
       }
     }
   }
@@ -283,7 +286,7 @@ void add_ground(Scene& scene, const StandingWater& water) {
   for (int sx : {-1, 1}) {
     for (int sz : {-1, 1}) add_pavement(scene, sx, sz, street);
   }
-  add_markings(scene, street);
+  add_markings(scene, water, street);
   add_ironwork(scene, water, street);
 
   const int puddles = scene.group("puddles");

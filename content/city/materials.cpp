@@ -75,11 +75,13 @@ struct Maker {
     const Picture& relief = maps.roughness_metalness;
     double sum = 0.0;
     for (std::size_t i = 0; i < relief.rgb.size(); i += 3) sum += relief.rgb[i];
-    m["extras"]["water"] = {{"hollow", "texcoord_1"},
-                            {"maximum_depth_mm", 1000.0f * puddle_depth_unit_m},
-                            {"relief_mm", 1000.0f * texture_relief_m(mat)},
-                            {"relief_mean", sum * 3.0 / static_cast<double>(relief.rgb.size()) / 255.0},
-                            {"tint", {0.72, 0.68, 0.58}}};
+    json& water = m["extras"]["water"];
+    water = {
+        {"hollow", "texcoord_1"}, {"maximum_depth_mm", 1000.0f * puddle_depth_unit_m}, {"tint", {0.72, 0.68, 0.58}}};
+    if (texture_relief_m(mat) > 0.0f) {
+      water["relief_mm"] = 1000.0f * texture_relief_m(mat);
+      water["relief_mean"] = sum * 3.0 / static_cast<double>(relief.rgb.size()) / 255.0;
+    }
     return m;
   }
 
@@ -128,7 +130,7 @@ json make(Maker& maker, Mat mat) {
     case Mat::ironwork:
       return maker.tiled("ironwork", ironwork_maps());
     case Mat::markings:
-      m = maker.tiled("markings", marking_maps());
+      m = maker.hollowed("markings", marking_maps(), Mat::markings);
       m.erase("normalTexture");
       maker.set.images.pop_back();
       return m;
