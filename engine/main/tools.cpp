@@ -21,6 +21,8 @@
 #include "systems/drip/chart.hpp"
 #include "systems/rainfall/bench.hpp"
 #include "systems/rainfall/bench_rungs.hpp"
+#include "systems/rainfall/extract.hpp"
+#include "systems/splash/splash.hpp"
 #include "systems/rainfall/measure.hpp"
 #include "systems/rainfall/near_drops/near_chart.hpp"
 #include "systems/rainfall/sprites/bench.hpp"
@@ -68,10 +70,14 @@ Result<std::vector<std::string>> pick(const std::vector<std::string>& asked, con
   return asked.empty() ? known : asked;
 }
 
+FrameRain bench_rain_of(const Emitter& emitter, const Wind& wind, double time_s) {
+  return make_frame_rain(emitter, start_rain_motion(emitter, wind), {}, 1, 1, time_s);
+}
+
 }  // namespace
 
 Result<void> bench(const BenchOptions& options) {
-  const auto names = pick(options.names, {"ecs", "rain", "rungs", "near_drops", "drips", "reflections", "ripples", "tariq", "halos"}, "benchmark");
+  const auto names = pick(options.names, {"ecs", "rain", "rungs", "near_drops", "splashes", "drips", "reflections", "ripples", "tariq", "halos"}, "benchmark");
   if (!names) return tl::unexpected(names.error());
   std::vector<BenchRow> rows;
   for (const std::string& name : *names) {
@@ -85,6 +91,8 @@ Result<void> bench(const BenchOptions& options) {
       auto measured = name == "halos" ? bench_halos(options.width, options.height, options.frames, software)
                       : name == "tariq" ? bench_tariq(options.drops, options.width, options.height, options.frames, software)
                       : name == "near_drops" ? bench_near_drops(options.frames, software)
+                      : name == "splashes" ? bench_splashes(options.width, options.height, options.frames, software,
+                                                            bench_rain_of)
                       : name == "drips" ? bench_drips(options.width, options.height, options.frames, software)
                       : name == "ripples" ? bench_ripples(options.frames, software)
                       : name == "reflections" ? bench_reflections(all_passes, options.width, options.height, options.frames,

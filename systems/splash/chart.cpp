@@ -179,7 +179,14 @@ Result<void> chart_splashes(const ChartRun& run, const MakeRain& make_rain) {
     chart.height = height;
     chart.error_label = "error of mean and deviation by blocks (no splashes: 1)";
     chart.floor = errors_of(truth[1], truth[0], none).all;
-    chart.points.push_back({"none", "", 1e-3, 1e-3, 1e-3, 1.0, 0.0, true,
+    chart.points.push_back({"none",
+                            "",
+                            1e-3,
+                            1e-3,
+                            1e-3,
+                            1.0,
+                            0.0,
+                            true,
                             {{"mean_error", 1.0}, {"deviation_error", 1.0}, {"splashes", 0.0}}});
     for (const Setting& s : settings) {
       std::vector<Picture> pictures;
@@ -203,8 +210,13 @@ Result<void> chart_splashes(const ChartRun& run, const MakeRain& make_rain) {
       if (!times) return tl::unexpected(times.error());
       advance(14);
       const double least = 1e-3;
-      chart.points.push_back({s.name, s.label, std::max(quantile(*times, 0.5), least),
-                              std::max(quantile(*times, 0.05), least), std::max(quantile(*times, 0.95), least), e.all, 0.0,
+      chart.points.push_back({s.name,
+                              s.label,
+                              std::max(quantile(*times, 0.5), least),
+                              std::max(quantile(*times, 0.05), least),
+                              std::max(quantile(*times, 0.95), least),
+                              e.all,
+                              0.0,
                               !s.published && std::isfinite(e.all),
                               {{"mean_error", e.mean}, {"deviation_error", e.deviation}, {"splashes", listed}}});
     }

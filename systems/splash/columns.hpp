@@ -1,5 +1,6 @@
 #pragma once
-// The field's cells as leaning columns: each follows its class's fall, so that all of its drops land in one small patch.
+// The field's cells as leaning columns: each follows its class's fall, so that all of its drops land in one small
+// patch.
 
 #include "systems/drops/layers.hpp"
 

@@ -20,9 +20,7 @@ struct Canvas {
   std::vector<glm::vec3> shown = std::vector<glm::vec3>(CROWN_SIDE * CROWN_SIDE, glm::vec3(0.0f));
 
   // Of the picture's axes: right, up, towards the eye. The eye looks along -z of the surface's frame, y is its normal.
-  glm::vec3 seen(const glm::vec3& p) const {
-    return {p.x, p.y * cosine - p.z * sine, p.y * sine + p.z * cosine};
-  }
+  glm::vec3 seen(const glm::vec3& p) const { return {p.x, p.y * cosine - p.z * sine, p.y * sine + p.z * cosine}; }
   void cover(int x, int y, float opacity, const glm::vec3& normal) {
     if (x < 0 || y < 0 || x >= CROWN_SIDE || y >= CROWN_SIDE || !(opacity > 0.0f)) return;
     const std::size_t at = std::size_t(y) * CROWN_SIDE + x;
@@ -114,7 +112,8 @@ std::vector<float> crown_picture(bool film, float elevation_deg, float phase) {
       canvas.piece(place, normal, area, now.sheet * bends);
     }
     // Its foot, a raised ring on the surface, flattens.
-    canvas.ball(out * ring * (1.0f + 0.01f * wave) + glm::vec3(0, 0.01f, 0), 0.018f * (1.0f - 0.8f * phase) * (film ? 1.0f : 0.7f));
+    canvas.ball(out * ring * (1.0f + 0.01f * wave) + glm::vec3(0, 0.01f, 0),
+                0.018f * (1.0f - 0.8f * phase) * (film ? 1.0f : 0.7f));
     // The rim tears where the sheet does.
     const float rim = 0.022f * (0.75f + 0.25f * wave) * std::sqrt(now.sheet);
     if (rim > 0.004f) canvas.ball(out * (ring + lean * high) + glm::vec3(0, high, 0), rim);
@@ -128,10 +127,11 @@ std::vector<float> crown_picture(bool film, float elevation_deg, float phase) {
     const float chance = rand_of(key, 2), strength = 0.3f + 1.25f * chance * chance;
     const float high = now.height * (1.0f + 0.16f * rim_wave(film, turn));
     const glm::vec3 foot = out * (now.radius + lean * high) + glm::vec3(0, high, 0);
-    const glm::vec3 way = glm::normalize(out * ((film ? 0.35f : 0.7f) + 0.5f * rand_of(key, 11)) +
-                                          glm::vec3(0, film ? 0.85f : 0.7f, 0) +
-                                          0.3f * (rand_of(key, 12) - 0.5f) * glm::vec3(-out.z, 0, out.x));
-    const float length = (film ? 0.26f : 0.22f) * strength * smooth(0.04f, 0.3f, phase) * (1.0f - smooth(0.55f, 0.85f, phase));
+    const glm::vec3 way =
+        glm::normalize(out * ((film ? 0.35f : 0.7f) + 0.5f * rand_of(key, 11)) + glm::vec3(0, film ? 0.85f : 0.7f, 0) +
+                       0.3f * (rand_of(key, 12) - 0.5f) * glm::vec3(-out.z, 0, out.x));
+    const float length =
+        (film ? 0.26f : 0.22f) * strength * smooth(0.04f, 0.3f, phase) * (1.0f - smooth(0.55f, 0.85f, phase));
     constexpr int beads = 9;
     for (int b = 0; b < beads && length > 0.01f; ++b) {
       const float s = (b + 0.5f) / beads;
@@ -145,7 +145,8 @@ std::vector<float> crown_picture(bool film, float elevation_deg, float phase) {
         continue;
       }
       const CrownShape then = crown_shape(film, leaves);
-      const glm::vec3 start = out * (then.radius + lean * then.height) + way * (0.24f * strength) + glm::vec3(0, then.height, 0);
+      const glm::vec3 start =
+          out * (then.radius + lean * then.height) + way * (0.24f * strength) + glm::vec3(0, then.height, 0);
       const glm::vec3 place = start + way * (0.7f * strength * since) - glm::vec3(0, 1.3f * since * since, 0);
       if (place.y > 0.0f) canvas.ball(place, 0.03f * (0.6f + 0.5f * rand_of(key, 7 + d)));
     }
@@ -175,7 +176,8 @@ std::vector<std::uint16_t> bake_crowns() {
           const std::vector<float> picture = crown_picture(kind == 0, view, phase);
           for (std::size_t i = 0; i < texels; ++i) sum[i] += picture[i] / (samples * CROWN_PHASES);
         }
-        for (std::size_t i = 0; i < texels; ++i) *out++ = static_cast<std::uint16_t>(std::lround(std::min(sum[i], 1.0) * 65535.0));
+        for (std::size_t i = 0; i < texels; ++i)
+          *out++ = static_cast<std::uint16_t>(std::lround(std::min(sum[i], 1.0) * 65535.0));
       }
     }
   return all;

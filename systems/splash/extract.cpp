@@ -41,7 +41,8 @@ MeshGlows glows_of(const Model& model) {
       if (std::max({material.emissive.r, material.emissive.g, material.emissive.b}) <= 0.0f) continue;
       const TextureUse& use = material.emissive_texture;
       for (std::size_t i = 0; i + 2 < p.indices.size(); i += 3) {
-        const Vertex &a = p.vertices[p.indices[i]], &b = p.vertices[p.indices[i + 1]], &c = p.vertices[p.indices[i + 2]];
+        const Vertex &a = p.vertices[p.indices[i]], &b = p.vertices[p.indices[i + 1]],
+                     &c = p.vertices[p.indices[i + 2]];
         const glm::vec3 area = 0.5f * glm::cross(b.position_m - a.position_m, c.position_m - a.position_m);
         const float size = glm::length(area);
         if (!(size > 1e-8f)) continue;
@@ -51,8 +52,8 @@ MeshGlows glows_of(const Model& model) {
           glm::vec3 mean(0.0f);
           const glm::vec3 at[4] = {{0.34f, 0.33f, 0.33f}, {0.6f, 0.2f, 0.2f}, {0.2f, 0.6f, 0.2f}, {0.2f, 0.2f, 0.6f}};
           for (const glm::vec3& w : at) {
-            const glm::vec2 uv = use.texcoord == 0 ? w.x * a.uv0 + w.y * b.uv0 + w.z * c.uv0
-                                                   : w.x * a.uv1 + w.y * b.uv1 + w.z * c.uv1;
+            const glm::vec2 uv =
+                use.texcoord == 0 ? w.x * a.uv0 + w.y * b.uv0 + w.z * c.uv0 : w.x * a.uv1 + w.y * b.uv1 + w.z * c.uv1;
             mean += 0.25f * texel_of(model.images[std::size_t(use.image)], uv * use.scale + use.offset);
           }
           radiance *= mean;
@@ -60,8 +61,15 @@ MeshGlows glows_of(const Model& model) {
         const glm::vec3 centre = (a.position_m + b.position_m + c.position_m) / 3.0f;
         const glm::ivec3 cell(glm::floor(centre / 2.0f));
         const glm::vec3 n = area / size;
-        const int way = (n.x > 0.5f ? 1 : n.x < -0.5f ? 2 : 0) + 3 * (n.y > 0.5f ? 1 : n.y < -0.5f ? 2 : 0) +
-                        9 * (n.z > 0.5f ? 1 : n.z < -0.5f ? 2 : 0);
+        const int way = (n.x > 0.5f    ? 1
+                         : n.x < -0.5f ? 2
+                                       : 0) +
+                        3 * (n.y > 0.5f    ? 1
+                             : n.y < -0.5f ? 2
+                                           : 0) +
+                        9 * (n.z > 0.5f    ? 1
+                             : n.z < -0.5f ? 2
+                                           : 0);
         auto& [place, sum, light, weight] = patches[Key(cell.x, cell.y, cell.z, way)];
         place += centre * size;
         sum += area;

@@ -18,8 +18,8 @@ void draw_overhead(OverheadState& state, PassContext& context) {
   const FrameSplashes& splashes = *frame.splashes;
   const glm::dvec2 at(frame.camera.position_m.x, frame.camera.position_m.z);
   const glm::dvec2 middle = glm::floor(at / overhead_step_m + 0.5) * overhead_step_m;
-  const bool same = state.drawn && !context.fresh("overhead") && state.version == splashes.glows_version &&
-                    state.middle_m == middle;
+  const bool same =
+      state.drawn && !context.fresh("overhead") && state.version == splashes.glows_version && state.middle_m == middle;
   if (same) return;
   state.middle_m = middle;
   state.version = splashes.glows_version;

@@ -94,9 +94,8 @@ std::string shader_of(const SplashGpuState& gpu, std::string name) {
 void list_field(SplashGpuState& gpu, PassContext& context, const Limits& limits) {
   const Frame& frame = context.frame;
   const float secondary = frame.techniques.share(Effect::splashes, SplashRung::secondary);
-  const RainLayers columns =
-      splash_columns(*frame.rain, frame.camera, context.width, context.height, limits.reach_m, limits.least_mm,
-                     secondary > 0.0f ? limits.secondary_reach_m : 0.0f);
+  const RainLayers columns = splash_columns(*frame.rain, frame.camera, context.width, context.height, limits.reach_m,
+                                            limits.least_mm, secondary > 0.0f ? limits.secondary_reach_m : 0.0f);
   gpu.columns = static_cast<std::uint32_t>(columns.candidates);
   if (columns.layers.empty()) return;
   upload(gpu.layers, std::span<const RainLayerGpu>(columns.layers));
@@ -157,7 +156,8 @@ void list_random(SplashGpuState& gpu, PassContext& context, const Limits& limits
   const auto wrapped = [&](double v) { return static_cast<float>(v - side * std::floor(v / side)); };
   program.set("layer_count", static_cast<unsigned>(classes.size()));
   program.set("places", static_cast<unsigned>(places));
-  program.set("square", glm::vec3(static_cast<float>(side), wrapped(frame.camera.position_m.x), wrapped(frame.camera.position_m.z)));
+  program.set("square", glm::vec3(static_cast<float>(side), wrapped(frame.camera.position_m.x),
+                                  wrapped(frame.camera.position_m.z)));
   program.set("turn", static_cast<unsigned>(static_cast<std::int64_t>(whole)));
   program.set("moment", glm::vec3(0.0f, static_cast<float>(turns - whole), static_cast<float>(period_s)));
   program.set("chances", glm::vec2(frame.techniques.share(Effect::splashes, SplashRung::random),
@@ -172,7 +172,8 @@ void list_landings(SplashGpuState& gpu, PassContext& context, const Limits& limi
   for (const DripLanding& d : frame.drips->landings) {
     const double age = frame.time_s - d.time_s;
     const glm::vec3 place(d.place_m - frame.camera.position_m);
-    if (age < 0.0 || age > impact::SECONDARY_LIFE + frame.camera.exposure_s || glm::length(place) > limits.reach_m) continue;
+    if (age < 0.0 || age > impact::SECONDARY_LIFE + frame.camera.exposure_s || glm::length(place) > limits.reach_m)
+      continue;
     SplashLandingGpu one{};
     one.place_age = glm::vec4(place, static_cast<float>(age));
     one.velocity_diameter = glm::vec4(d.velocity_mps, d.diameter_mm * 1e-3f);
@@ -225,7 +226,8 @@ void draw_splashes(SplashGpuState& gpu, PassContext& context) {
   if (gpu.crown.width == 0) {
     const std::vector<std::uint16_t> baked = bake_crowns();
     constexpr int levels = 7;
-    gpu.crown = make_texture_2d_array(CROWN_SIDE, CROWN_SIDE, CROWN_PHASES * CROWN_VIEWS * CROWN_KINDS, GL_RGBA16, levels);
+    gpu.crown =
+        make_texture_2d_array(CROWN_SIDE, CROWN_SIDE, CROWN_PHASES * CROWN_VIEWS * CROWN_KINDS, GL_RGBA16, levels);
     glTextureSubImage3D(gpu.crown.id, 0, 0, 0, 0, CROWN_SIDE, CROWN_SIDE, gpu.crown.layers, GL_RGBA, GL_UNSIGNED_SHORT,
                         baked.data());
     glGenerateTextureMipmap(gpu.crown.id);
@@ -275,14 +277,14 @@ std::vector<PassOffer> splash_passes(const DropPainting& painting) {
   PassOffer list;
   list.name = "splash_list";
   list.meaning = "splashes that are alive: impacts of the drop field, found through the maps of shelter";
-  list.slots = {{"depth", SlotAccess::read},
-                {"occlusion_map", SlotAccess::read},
-                {"normal", SlotAccess::read, true},
-                {"water", SlotAccess::read, true},
-                {"overhead", SlotAccess::read, true},
-                {"environment", SlotAccess::read, true}};
-  list.parameters = {{"least_radiance", 0.004}, {"software_most", 2000}, {"software_reach", 8},
-                     {"software_secondary_reach", 1.5}, {"software_least_mm", 1.1}};
+  list.slots = {{"depth", SlotAccess::read},          {"occlusion_map", SlotAccess::read},
+                {"normal", SlotAccess::read, true},   {"water", SlotAccess::read, true},
+                {"overhead", SlotAccess::read, true}, {"environment", SlotAccess::read, true}};
+  list.parameters = {{"least_radiance", 0.004},
+                     {"software_most", 2000},
+                     {"software_reach", 8},
+                     {"software_secondary_reach", 1.5},
+                     {"software_least_mm", 1.1}};
   const std::string folder = "systems/splash/";
   for (const char* name : {"columns", "drops", "random", "landings"})
     add_shader(list, name, folder + "splash_" + name + ".comp.glsl", {});
@@ -313,8 +315,8 @@ SplashStats splash_stats() {
   glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
   glCopyNamedBufferSubData(gpu->command.id, gpu->read_back.id, 0, 0, sizeof command);
   read_buffer(gpu->read_back, &command, sizeof command);
-  return {gpu->columns, std::min(command.cell_groups.w, gpu->cell_capacity), std::min(command.draw_groups.w, gpu->capacity),
-          command.threshold.z, command.threshold.w};
+  return {gpu->columns, std::min(command.cell_groups.w, gpu->cell_capacity),
+          std::min(command.draw_groups.w, gpu->capacity), command.threshold.z, command.threshold.w};
 }
 
 std::vector<SplashGpu> read_splashes() {

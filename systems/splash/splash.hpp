@@ -1,7 +1,7 @@
 #pragma once
 // Splashes of the rain and of drips where they land (Tatarchuk and Isidoro 2006, section 3.3): the impacts of the drop
-// field itself, found through the maps of shelter. Drawn into the sums of drops, which pass rain_composite lays over the
-// picture.
+// field itself, found through the maps of shelter. Drawn into the sums of drops, which pass rain_composite lays over
+// the picture.
 
 #include <functional>
 #include <memory>
@@ -31,12 +31,13 @@ std::vector<PassOffer> splash_passes(const DropPainting&);
 // Fills frame.splashes where it rains or drips have landed. After camera, rain, drips, instances and lights.
 void extract_splashes(const Registry&, Frame&, const std::vector<std::shared_ptr<const Model>>& models);
 // What shines within reach_m of the camera and is no light.
-std::vector<SplashGlow> splash_glows(const Frame&, const std::vector<std::shared_ptr<const Model>>& models, float reach_m);
+std::vector<SplashGlow> splash_glows(const Frame&, const std::vector<std::shared_ptr<const Model>>& models,
+                                     float reach_m);
 
 struct SplashStats {
   std::uint32_t columns = 0, cells = 0, splashes = 0;  // looked at; listed
-  float drawn = 0.0f;                      // of those of the field, on average
-  float estimated = 0.0f;                 // alive, by the columns: several times what is there
+  float drawn = 0.0f;                                  // of those of the field, on average
+  float estimated = 0.0f;                              // alive, by the columns: several times what is there
 };
 // Of the frame just executed; wait for the GPU.
 SplashStats splash_stats();

@@ -76,8 +76,8 @@ Result<void> SplashStage::load() {
   r["water"] = {{"format", "rg16f"}};
   r["overhead"] = {{"format", "rgba16f"}, {"width", 128}, {"height", 128}, {"persistent", true}};
   r["colour"] = {{"format", "rgba16f"}};
-  Json list = {{"pass", "splash_list"}, {"depth", "depth"}, {"normal", "normal"}, {"occlusion_map", "map"},
-               {"water", "water"},      {"overhead", "overhead"}};
+  Json list = {{"pass", "splash_list"},  {"depth", "depth"}, {"normal", "normal"},
+               {"occlusion_map", "map"}, {"water", "water"}, {"overhead", "overhead"}};
   if (set_.unlimited) list["parameters"] = {{"software_most", 0}};
   table["passes"] = Json::array(
       {{{"pass", "gbuffer"}, {"depth", "depth"}, {"albedo", "albedo"}, {"normal", "normal"}, {"emissive", "emissive"}},
@@ -134,7 +134,8 @@ Result<void> SplashStage::draw(Frame& frame) {
 std::vector<float> SplashStage::light() const {
   std::vector<float> pixels(std::size_t(output_->width) * output_->height * 3);
   glMemoryBarrier(GL_TEXTURE_UPDATE_BARRIER_BIT);
-  glGetTextureImage(output_->id, 0, GL_RGB, GL_FLOAT, static_cast<GLsizei>(pixels.size() * sizeof(float)), pixels.data());
+  glGetTextureImage(output_->id, 0, GL_RGB, GL_FLOAT, static_cast<GLsizei>(pixels.size() * sizeof(float)),
+                    pixels.data());
   return pixels;
 }
 

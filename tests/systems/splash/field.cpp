@@ -67,13 +67,13 @@ std::vector<Landed> landed_in(const FrameRain& rain, const glm::dvec2& low, cons
         for (auto j = std::int64_t(std::floor(from.y / e)); j <= std::int64_t(std::floor(to.y / e)); ++j)
           for (auto l = std::int64_t(std::floor(from.z / e)); l <= std::int64_t(std::floor(to.z / e)); ++l) {
             const std::uint32_t salt = std::uint32_t(k << 8 | unsigned(number)) ^ (rain.seed * 0x9e3779b9u);
-            const glm::uvec4 bits = random_bits4(glm::uvec4(std::uint32_t(i), std::uint32_t(j), std::uint32_t(l), salt));
+            const glm::uvec4 bits =
+                random_bits4(glm::uvec4(std::uint32_t(i), std::uint32_t(j), std::uint32_t(l), salt));
             const unsigned count = poisson_count(unit_float(bits.x), layer.expected, std::exp(-layer.expected), 255u);
             for (unsigned m = 0; m < count; ++m) {
               const glm::uvec4 b = random_bits4(glm::uvec4(bits.y, bits.z, m, bits.w));
-              const glm::dvec3 at =
-                  c.origin_m + e * (glm::dvec3(double(i), double(j), double(l)) +
-                                    glm::dvec3(unit_float(b.x), unit_float(b.y), unit_float(b.z)));
+              const glm::dvec3 at = c.origin_m + e * (glm::dvec3(double(i), double(j), double(l)) +
+                                                      glm::dvec3(unit_float(b.x), unit_float(b.y), unit_float(b.z)));
               const double age = at.y / velocity.y;
               if (age < 0.0 || age > age_s) continue;
               const glm::dvec3 place = at - velocity * age;

@@ -31,9 +31,9 @@ TEST(Impact, NumbersOfTerminalDropsAreThoseOfTheTable) {
 }
 
 TEST(Impact, ThresholdsAreThoseOfTheLiterature) {
-  EXPECT_NEAR(threshold_mm(impact::splash_on_dry), 0.69f, 0.02f);     // Mundo
-  EXPECT_NEAR(threshold_mm(impact::splash_on_wetted), 0.92f, 0.03f);  // Bai and Gosman
-  EXPECT_NEAR(threshold_mm(impact::splash_on_smooth), 3.6f, 0.15f);   // Stow and Hadfield
+  EXPECT_NEAR(threshold_mm(impact::splash_on_dry), 0.69f, 0.02f);          // Mundo
+  EXPECT_NEAR(threshold_mm(impact::splash_on_wetted), 0.92f, 0.03f);       // Bai and Gosman
+  EXPECT_NEAR(threshold_mm(impact::splash_on_smooth), 3.6f, 0.15f);        // Stow and Hadfield
   const float film[3][2] = {{0.1f, 1.04f}, {0.5f, 1.30f}, {1.0f, 1.67f}};  // Cossali
   for (const auto& [h, mm] : film)
     EXPECT_NEAR(threshold_mm([h = h](float d, float v) { return impact::splash_on_film(d, v, h * d); }), mm, 0.03f);
