@@ -58,9 +58,9 @@ struct RippleRing {
 struct RippleSettings {
   bool published = false;
   float strength = 1.0f;
-  float wave_speed_mps = 0.225f;
+  float wave_speed_mps = 0.235f;
   float decay_per_s = 1.8f;
-  float tile_m = 1.0f;
+  float tile_m = 0.75f;
   float seed_cells = 3.0f;
 };
 

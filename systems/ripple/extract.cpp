@@ -30,8 +30,10 @@ double water_coverage(const Frame& frame) {
   for (const FramePuddles::Puddle& p : frame.puddles->puddles) {
     if (!(p.level_m > 0.0f)) continue;
     const glm::vec3 middle(glm::dvec3(p.world_from_puddle[3]) - camera.position_m);
+    const glm::mat3 turn(p.world_from_puddle);
+    const glm::vec3 half = glm::abs(turn[0]) * p.half_size_m.x + glm::abs(turn[2]) * p.half_size_m.y;
     const float radius = glm::length(p.half_size_m), away = glm::length(middle);
-    if (away - radius > farthest_ring_m || !sphere_touches(view, middle, radius)) continue;
+    if (away - radius > farthest_ring_m || !box_touches(view, middle, half)) continue;
     // Its solid angle, seen aslant; near ones fill what they can.
     const double reach = std::max<double>(away, 0.5 * radius);
     const double slant = std::max<double>(std::abs(middle.y) / reach, 0.02);

@@ -19,6 +19,7 @@ void RippleLattice::rest(int cells_now, bool near_now) {
   }
   cells = cells_now;
   near = near_now;
+  last_step_s = 0.0;
   clear_buffer(state);
 }
 
@@ -48,12 +49,16 @@ void RippleLattice::step(const RipplePrograms& programs, const RippleScheme& sch
   // The pull of the level is of a slow spring (0.5 rad/s): it holds the mean, which nothing else does, against
   // rounding.
   const double pull = scheme.quantised ? 0.0 : 0.25 * dt * dt;
-  program.set("losses", glm::vec4(1.0 - std::exp(-2.0 * decay_per_s * dt), pull, 0.0, 0.0));
+  // w is what a step adds: of another step's length it is another number, or jitter would pump the waves up.
+  const double ratio = last_step_s > 0.0 ? dt / last_step_s : 1.0;
+  last_step_s = dt;
+  const float lost = static_cast<float>(1.0 - std::exp(-2.0 * decay_per_s * dt));
   program.set("euler", int(scheme.euler));
   program.set("quantised", int(scheme.quantised));
   const int groups = (cells + RIPPLE_GROUP - 1) / RIPPLE_GROUP;
   for (int i = 0; i < steps; ++i) {
     // Seeds join after the tick's last step, so that at the tick they are as they were made.
+    program.set("losses", glm::vec4(lost, pull, i == 0 ? ratio : 1.0, 0.0));
     program.set("shift", i == 0 ? shift : glm::ivec2(0));
     program.set("stamped", int(seed_count > 0 && i == steps - 1));
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, RIPPLE_STATE_BINDING, state.id);
@@ -111,9 +116,7 @@ void RippleWaves::advance(const RipplePrograms& programs, const FrameRipples& fr
   std::vector<RippleImpact> landed;
   if (near) {
     // Ticks before the first known one have no rain.
-    landed = field_impacts(frame, std::max(first, frame.first_tick() + 1), frame.tick, since, cells);
-    std::stable_sort(landed.begin(), landed.end(),
-                     [](const RippleImpact& a, const RippleImpact& b) { return a.tick < b.tick; });
+    landed = drops_.impacts(frame, std::max(first, frame.first_tick() + 1), frame.tick, since, cells);
   }
   auto next_landed = landed.begin();
   for (std::int64_t tick = first; tick <= frame.tick; ++tick) {

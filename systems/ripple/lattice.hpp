@@ -8,6 +8,7 @@
 #include "engine/gpu/objects.hpp"
 #include "engine/gpu/shader.hpp"
 #include "systems/ripple/ripple_shared.h"
+#include "systems/ripple/seeds.hpp"
 #include "systems/ripple_frame.hpp"
 
 namespace petrichor {
@@ -31,6 +32,7 @@ struct RippleLattice {
   int cells = 0;      // per side, a power of two
   bool near = false;  // not repeated, with the age of its cells; else it goes round
   Buffer state, next, stamps;
+  double last_step_s = 0.0;  // that w is the increment of
   void rest(int cells, bool near);
   // Adds the seeds to the stamps, steps and shifts.
   void step(const RipplePrograms&, const RippleScheme&, double speed_mps, double cell_m, double decay_per_s,
@@ -58,6 +60,7 @@ class RippleWaves {
   void advance(const RipplePrograms&, const FrameRipples&, const RippleScheme&, int cells, RippleRun&, bool near,
                std::int64_t start, std::int64_t since);
   std::array<RippleRun, 2> shared_, near_;
+  FieldDrops drops_;
   Buffer seeds_;
   std::int64_t steps_ = 0;
 };

@@ -35,13 +35,14 @@ double peak_wave_number(double deviation_m) {
 namespace {
 
 struct RipplesGpu {
+  bool software = false, known = false;
   RippleWaves waves;
   RippleRings shared_rings, drip_rings;
   Buffer uniforms;
 };
 
 void draw_slopes(PassContext& context, const RippleRun& run, const FrameRipples& frame, double cell_m, float strength,
-                 bool near, bool add) {
+                 bool near, bool add, int level) {
   const Program& program = context.program(near ? "slopes_near" : "slopes");
   const int cells = run.lattice.cells;
   program.use();
@@ -52,7 +53,7 @@ void draw_slopes(PassContext& context, const RippleRun& run, const FrameRipples&
   program.set("strength", strength);
   program.set("add", int(add));
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, RIPPLE_STATE_BINDING, run.lattice.state.id);
-  glBindImageTexture(0, context.texture("ripples").id, 0, GL_FALSE, near ? 1 : 0, GL_READ_WRITE, GL_RGBA16F);
+  glBindImageTexture(0, context.texture("ripples").id, level, GL_FALSE, near ? 1 : 0, GL_READ_WRITE, GL_RGBA16F);
   program.dispatch(cells, cells);
 }
 
@@ -64,31 +65,36 @@ void draw_ripples(RipplesGpu& gpu, PassContext& context) {
   if (!newest) return;
   glTextureParameteri(map.id, GL_TEXTURE_WRAP_S, GL_REPEAT);
   glTextureParameteri(map.id, GL_TEXTURE_WRAP_T, GL_REPEAT);
-  if (context.fresh("ripples")) clear_texture(map);
+  if (map.levels > 1) glTextureParameteri(map.id, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_NEAREST);
   const RippleSettings& settings = ripples.settings;
   const RippleShares shares = ripple_shares(frame.techniques, settings.published);
   const RipplePrograms programs{&context.program("stamp"), &context.program("step"), &context.program("step_near")};
-  const int cells = map.width;
+  // Software OpenGL has smaller lattices: they fill a smaller level of the texture.
+  if (!gpu.known) gpu.software = is_software_gl();
+  gpu.known = true;
+  const int level =
+      gpu.software ? std::clamp(static_cast<int>(context.parameter("software_level")), 0, map.levels - 1) : 0;
+  const int cells = map.width >> level;
   const double tile_cell_m = settings.tile_m / cells;
 
   // Layer 0, the tile that all share.
   if (shares.rings > 0.0f) {
-    const bool software = context.parameter("rings") == 0.0f && is_software_gl();
     const int most = context.parameter("rings") > 0.0f ? static_cast<int>(context.parameter("rings"))
-                     : software                        ? 48
+                     : gpu.software                    ? 48
                                                        : 256;
-    gpu.shared_rings.draw(context.program("rings"), map, 0, strongest_rings(ripples, most, ring_life_s),
+    gpu.shared_rings.draw(context.program("rings"), map, level, 0, strongest_rings(ripples, most, ring_life_s),
                           {tile_cell_m, settings.tile_m, settings.decay_per_s}, shares.rings * settings.strength);
   }
   if (shares.lattice > 0.0f) {
     if (shares.rings > 0.0f) glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
     const RippleRun* run = gpu.waves.bring(programs, ripples, shares.scheme, cells, false);
-    draw_slopes(context, *run, ripples, tile_cell_m, shares.lattice * settings.strength, false, shares.rings > 0.0f);
+    draw_slopes(context, *run, ripples, tile_cell_m, shares.lattice * settings.strength, false, shares.rings > 0.0f,
+                level);
   }
 
   // Layers 1 and 2, the tile of the world near the eye. Of drips, too, where there is no near lattice.
   RippleUniforms uniforms{};
-  uniforms.tile = {1.0f / settings.tile_m, shares.rings + shares.lattice, 0.0f, 0.0f};
+  uniforms.tile = {1.0f / settings.tile_m, shares.rings + shares.lattice, 0.0f, static_cast<float>(level)};
   const double deviation = std::max<double>(natural_seed_m, settings.seed_cells * tile_cell_m);
   uniforms.slopes = {newest->slope_variance * settings.strength * settings.strength,
                      static_cast<float>(peak_wave_number(deviation)), 0.0f, 0.35f};
@@ -101,7 +107,7 @@ void draw_ripples(RipplesGpu& gpu, PassContext& context) {
         static_cast<float>(peak_wave_number(std::max<double>(natural_seed_m, settings.seed_cells * near_cell)));
     if (shares.near > 0.0f && map.layers > 1) {
       if (const RippleRun* run = gpu.waves.bring(programs, ripples, shares.scheme, cells, true)) {
-        draw_slopes(context, *run, ripples, near_cell, settings.strength, true, false);
+        draw_slopes(context, *run, ripples, near_cell, settings.strength, true, false, level);
         uniforms.near_place.w = shares.near;
       }
     }
@@ -113,7 +119,7 @@ void draw_ripples(RipplesGpu& gpu, PassContext& context) {
         drips.push_back(ring);
     }
     if (!drips.empty() && map.layers > 2) {
-      gpu.drip_rings.draw(context.program("rings"), map, 2, drips, {near_cell, 0.0, settings.decay_per_s},
+      gpu.drip_rings.draw(context.program("rings"), map, level, 2, drips, {near_cell, 0.0, settings.decay_per_s},
                           uniforms.tile.y * settings.strength);
       uniforms.tile.z = 1.0f;
     }
@@ -131,8 +137,9 @@ std::vector<PassOffer> ripple_passes() {
   offer.meaning =
       "waves on standing water: slopes of a repeated tile, of a tile of the world near the eye, and of drips";
   offer.slots = {{"ripples", SlotAccess::write}};
-  // rings: the most that are stamped in closed form; 0: by the device.
-  offer.parameters = {{"rings", 0.0}};
+  // rings: the most that are stamped in closed form; 0: by the device. software_level: how often software OpenGL halves
+  // the lattices, as far as the texture has levels.
+  offer.parameters = {{"rings", 0.0}, {"software_level", 0.0}};
   const std::string folder = "systems/ripple/";
   offer.shaders = {{"stamp", {{folder + "ripple_stamp.comp.glsl"}, {}}},
                    {"step", {{folder + "ripple_step.comp.glsl"}, {}}},

@@ -16,8 +16,8 @@ double ring_reach_m(double age_s) {
 
 }  // namespace
 
-void RippleRings::draw(const Program& program, const Texture& map, int layer, const std::vector<RippleRing>& rings,
-                       const RingLayer& on, float share) {
+void RippleRings::draw(const Program& program, const Texture& map, int level, int layer,
+                       const std::vector<RippleRing>& rings, const RingLayer& on, float share) {
   if (decay_ != on.decay_per_s) {
     RingTable table =
         make_ring_table(RIPPLE_TABLE_RADII, RIPPLE_TABLE_TIMES, ring_radius_step_m, ring_time_step_s, on.decay_per_s);
@@ -34,7 +34,7 @@ void RippleRings::draw(const Program& program, const Texture& map, int layer, co
   std::vector<glm::vec4> packed;
   for (const RippleRing& r : rings) packed.emplace_back(glm::vec2(r.place_m), r.age_s, r.amplitude_m);
   // A list of rings for each block; by their order, so that sums are always the same.
-  const int cells = map.width, side = (cells + RIPPLE_BLOCK - 1) / RIPPLE_BLOCK;
+  const int cells = map.width >> level, side = (cells + RIPPLE_BLOCK - 1) / RIPPLE_BLOCK;
   const double block_m = RIPPLE_BLOCK * on.cell_m, half_m = 0.7072 * block_m;
   std::vector<std::uint32_t> lists(static_cast<std::size_t>(2 * side * side));
   for (int y = 0; y < side; ++y)
@@ -57,7 +57,7 @@ void RippleRings::draw(const Program& program, const Texture& map, int layer, co
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, RIPPLE_SEEDS_BINDING, rings_.id);
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, RIPPLE_STAMPS_BINDING, lists_.id);
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, RIPPLE_TABLE_BINDING, table_.id);
-  glBindImageTexture(0, map.id, 0, GL_FALSE, layer, GL_WRITE_ONLY, GL_RGBA16F);
+  glBindImageTexture(0, map.id, level, GL_FALSE, layer, GL_WRITE_ONLY, GL_RGBA16F);
   program.use();
   program.set("cells", cells);
   program.set("cell_m", static_cast<float>(on.cell_m));

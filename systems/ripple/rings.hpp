@@ -22,7 +22,8 @@ struct RingLayer {
 class RippleRings {
  public:
   // Places in metres from the layer's corner.
-  void draw(const Program&, const Texture&, int layer, const std::vector<RippleRing>&, const RingLayer&, float share);
+  void draw(const Program&, const Texture&, int level, int layer, const std::vector<RippleRing>&, const RingLayer&,
+            float share);
 
  private:
   Buffer table_, rings_, lists_;

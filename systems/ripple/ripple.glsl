@@ -51,7 +51,7 @@ Ripples ripples_at(vec3 place, float scale, float turn_rad, float open) {
   if (ripples.near_place.w > 0.0 && inside > 0.0) {
     // 14 cells of 256 swallow waves; they are not shown.
     near = smoothstep(0.06, 0.06 + 0.5 * ripples.slopes.w, inside) * ripples.near_place.w;
-    vec4 found = textureLod(ripple_map, vec3(near_uv, 1.0), 0.0);
+    vec4 found = textureLod(ripple_map, vec3(near_uv, 1.0), ripples.tile.w);
     full = near * found.z;
     float near_shown = ripple_shown(footprint, ripples.slopes.z);
     // What has just come into the tile has few waves yet: the shared tile fills up, by variance.
@@ -59,14 +59,14 @@ Ripples ripples_at(vec3 place, float scale, float turn_rad, float open) {
     left = mix(left, 1.0 - near_shown, full);
   }
   if (full < 0.999 && ripples.tile.y > 0.0) {
-    vec2 found = textureLod(ripple_map, vec3(uv, 0.0), 0.0).xy;
+    vec2 found = textureLod(ripple_map, vec3(uv, 0.0), ripples.tile.w).xy;
     slope += vec2(c * found.x + s * found.y, c * found.y - s * found.x) * sqrt((1.0 - full) * shared_shown);
   }
   slope *= open;
   float variance = left * ripples.slopes.x * open * open;
   if (ripples.tile.z > 0.0 && inside > 0.0) {
     float shown = ripple_shown(footprint, ripples.slopes.z);
-    vec2 found = textureLod(ripple_map, vec3(near_uv, 2.0), 0.0).xy * smoothstep(0.0, 0.08, inside);
+    vec2 found = textureLod(ripple_map, vec3(near_uv, 2.0), ripples.tile.w).xy * smoothstep(0.0, 0.08, inside);
     slope += found * sqrt(shown);
     variance += dot(found, found) * (1.0 - shown);
   }

@@ -44,7 +44,8 @@ struct RippleRingGpu {
 
 struct RippleUniforms {
   vec4 near_place;  // xy: from the camera to the near tile's corner, x and z, m; z: 1 / its edge, 1/m; w: share, 0 none
-  vec4 tile;        // x: 1 / edge of the shared tile, 1/m; y: its share; z: share of drips' rings; w: 1 / their tile's edge
+  vec4 tile;        // x: 1 / edge of the shared tile, 1/m; y: its share; z: share of drips' rings; w: level of the
+                    // texture that is filled
   vec4 slopes;      // x: mean square slope of rain's ripples; y: wave number of their peak, 1/m, in the shared tile, z in
                     // the near one; w: half an inverse of the edge in which the near tile fades
 };

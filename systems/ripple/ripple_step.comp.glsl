@@ -12,7 +12,7 @@ layout(std430, binding = RIPPLE_STAMPS_BINDING) buffer Stamps { int stamps[]; };
 uniform int cells;
 uniform ivec2 shift;     // the near tile has moved by so many cells
 uniform vec4 laplacian;  // weights of straight and slanting neighbours, of the middle; w: Courant number squared
-uniform vec4 losses;     // share of w that is lost in a step; pull of the level; 0; 0
+uniform vec4 losses;     // share of w that is lost in a step; pull of the level; this step's length by the last one's; 0
 uniform int euler;       // 1: forward Euler, both from old values
 uniform int quantised;   // 1: 16 bits, as published
 uniform int stamped;     // there are seeds
@@ -53,6 +53,7 @@ void main() {
 #else
   float w = state[plane + index];
 #endif
+  w *= losses.z;
   float increment = (1.0 - lost) * w + pull;
   float level = z + (euler != 0 ? w : increment);
   if (stamped != 0) {

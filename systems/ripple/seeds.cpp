@@ -42,87 +42,89 @@ Window window_of(const RippleTick& t, int cells) {
 
 }  // namespace
 
-std::vector<RippleImpact> field_impacts(const FrameRipples& frame, std::int64_t first, std::int64_t last,
-                                        std::int64_t since, int cells) {
-  std::vector<RippleImpact> impacts;
-  constexpr std::int64_t batch = 8;
-  for (std::int64_t from = first; from <= last; from += batch) {
-    const std::int64_t to = std::min(from + batch - 1, last);
-    const auto ticks = static_cast<std::size_t>(to - from + 1);
-    // Of every tick: its rain, the tile, and the classes' places then and before.
-    std::vector<Window> windows;
-    std::vector<const RippleTick*> now;
-    for (std::int64_t tick = from - 1; tick <= to; ++tick) {
-      const RippleTick* t = frame.at(tick);
-      const RippleTick* lies = frame.at(std::max(tick, since));
-      now.push_back(t);
-      windows.push_back(lies && lies->near_cell_m > 0.0f ? window_of(*lies, cells) : Window{});
+namespace {
+
+// All drops of a class in a box of its own frame, by layer, cell and drop: drops_of_cell and drop_of_cell of
+// field.glsl.
+std::vector<glm::dvec3> drops_in(const RippleRain::Class& c, std::uint32_t seed, const glm::dvec3& low,
+                                 const glm::dvec3& high) {
+  std::vector<glm::dvec3> drops;
+  RainClass field{};
+  field.drops_per_m3 = c.drops_per_m3;
+  field.base_drops_per_m3 = c.base_drops_per_m3;
+  std::uint32_t number = 0;
+  for (const RainLayer& layer : layers_of(field)) {
+    const double edge = layer.edge_m;
+    const float none = std::exp(-layer.expected);
+    const std::uint32_t salt = (c.field_index << 8 | number++) ^ (seed * 0x9e3779b9u);
+    const glm::dvec3 begin = glm::floor(low / edge), end = glm::floor(high / edge);
+    const auto wrapped = [](double v) { return static_cast<std::uint32_t>(static_cast<std::int64_t>(v)); };
+    for (double z = begin.z; z <= end.z; ++z)
+      for (double y = begin.y; y <= end.y; ++y)
+        for (double x = begin.x; x <= end.x; ++x) {
+          const glm::uvec4 bits = random_bits4(glm::uvec4(wrapped(x), wrapped(y), wrapped(z), salt));
+          const std::uint32_t count = poisson_count(unit_float(bits.x), layer.expected, none, 255u);
+          for (std::uint32_t m = 0; m < count; ++m) {
+            const glm::uvec4 b = random_bits4(glm::uvec4(bits.y, bits.z, m, bits.w));
+            const glm::dvec3 drop =
+                (glm::dvec3(x, y, z) + glm::dvec3(unit_float(b.x), unit_float(b.y), unit_float(b.z))) * edge;
+            if (glm::all(glm::greaterThanEqual(drop, low)) && glm::all(glm::lessThanEqual(drop, high)))
+              drops.push_back(drop);
+          }
+        }
+  }
+  return drops;
+}
+
+bool holds(const glm::dvec3& low, const glm::dvec3& high, const glm::dvec3& inner_low, const glm::dvec3& inner_high) {
+  return glm::all(glm::lessThanEqual(low, inner_low)) && glm::all(glm::greaterThanEqual(high, inner_high));
+}
+
+}  // namespace
+
+std::vector<RippleImpact> FieldDrops::impacts(const FrameRipples& frame, std::int64_t first, std::int64_t last,
+                                              std::int64_t since, int cells) {
+  std::vector<RippleImpact> found;
+  for (std::int64_t tick = first; tick <= last; ++tick) {
+    const RippleTick *now = frame.at(tick), *before = frame.at(tick - 1), *lies = frame.at(std::max(tick, since));
+    if (!now || !before || !lies || !now->rain || !(lies->near_cell_m > 0.0f) ||
+        before->origins_m.size() != now->origins_m.size())
+      continue;
+    const Window w = window_of(*lies, cells);
+    if (rain_ != now->rain) {
+      rain_ = now->rain;
+      ahead_.assign(rain_->classes.size(), {});
     }
-    for (std::size_t i = 1; i <= ticks;) {
-      // A run of ticks with one rain.
-      const auto usable = [&](std::size_t at) {
-        return now[at] && now[at - 1] && now[at]->rain && now[at - 1]->rain &&
-               now[at]->rain->classes.size() == now[at - 1]->rain->classes.size() &&
-               windows[at].high.x > windows[at].low.x;
-      };
-      if (!usable(i)) {
-        ++i;
-        continue;
+    for (std::size_t k = 0; k < rain_->classes.size(); ++k) {
+      const RippleRain::Class& c = rain_->classes[k];
+      const glm::dvec3 &a = before->origins_m[k], &b = now->origins_m[k];
+      const glm::dvec3 low = glm::dvec3(w.low.x, w.water_m, w.low.y) - glm::max(a, b);
+      const glm::dvec3 high = glm::dvec3(w.high.x, w.water_m, w.high.y) - glm::min(a, b);
+      Ahead& held = ahead_[k];
+      if (!holds(held.low, held.high, low, high)) {
+        // So many ticks ahead that not all classes run out together.
+        const double fall = c.fall_speed_mps * frame.step_s * static_cast<double>(12 + 5 * k % 8);
+        held.low = low - glm::dvec3(0.25, 1e-6, 0.25);
+        held.high = high + glm::dvec3(0.25, fall + 1e-6, 0.25);
+        held.drops = drops_in(c, rain_->seed, held.low, held.high);
       }
-      std::size_t end = i + 1;
-      while (end <= ticks && usable(end) && now[end]->rain == now[i]->rain) ++end;
-      const RippleRain& rain = *now[i]->rain;
-      for (std::size_t k = 0; k < rain.classes.size(); ++k) {
-        const RippleRain::Class& c = rain.classes[k];
-        glm::dvec3 low(1e300), high(-1e300);  // relative to the class's own frame
-        for (std::size_t at = i; at < end; ++at) {
-          const glm::dvec3 &a = now[at - 1]->origins_m[k], &b = now[at]->origins_m[k];
-          const Window& w = windows[at];
-          low = glm::min(low, glm::dvec3(w.low.x, w.water_m, w.low.y) - glm::max(a, b));
-          high = glm::max(high, glm::dvec3(w.high.x, w.water_m, w.high.y) - glm::min(a, b));
-        }
-        RainClass field{};
-        field.drops_per_m3 = c.drops_per_m3;
-        field.base_drops_per_m3 = c.base_drops_per_m3;
-        int number = 0;
-        for (const RainLayer& layer : layers_of(field)) {
-          const double edge = layer.edge_m;
-          const float none = std::exp(-layer.expected);
-          const std::uint32_t salt =
-              (c.field_index << 8 | static_cast<std::uint32_t>(number)) ^ (rain.seed * 0x9e3779b9u);
-          const glm::dvec3 begin = glm::floor(low / edge), over = glm::floor(high / edge);
-          for (double z = begin.z; z <= over.z; ++z)
-            for (double y = begin.y; y <= over.y; ++y)
-              for (double x = begin.x; x <= over.x; ++x) {
-                const auto wrapped = [](double v) { return static_cast<std::uint32_t>(static_cast<std::int64_t>(v)); };
-                const glm::uvec4 bits = random_bits4(glm::uvec4(wrapped(x), wrapped(y), wrapped(z), salt));
-                const std::uint32_t count = poisson_count(unit_float(bits.x), layer.expected, none, 255u);
-                for (std::uint32_t m = 0; m < count; ++m) {
-                  const glm::uvec4 b = random_bits4(glm::uvec4(bits.y, bits.z, m, bits.w));
-                  const glm::dvec3 drop =
-                      (glm::dvec3(x, y, z) + glm::dvec3(unit_float(b.x), unit_float(b.y), unit_float(b.z))) * edge;
-                  if (drop.y < low.y || drop.y > high.y) continue;
-                  for (std::size_t at = i; at < end; ++at) {
-                    const glm::dvec3 before = drop + now[at - 1]->origins_m[k], after = drop + now[at]->origins_m[k];
-                    const Window& w = windows[at];
-                    if (!(before.y > w.water_m && after.y <= w.water_m)) continue;
-                    const double share = (before.y - w.water_m) / (before.y - after.y);
-                    const glm::dvec3 lands = glm::mix(before, after, share);
-                    const glm::dvec2 place(lands.x, lands.z);
-                    if (glm::all(glm::greaterThan(place, w.low)) && glm::all(glm::lessThan(place, w.high)))
-                      impacts.push_back(
-                          {place, c.diameter_mm, c.fall_speed_mps, from - 1 + static_cast<std::int64_t>(at)});
-                    break;
-                  }
-                }
-              }
-          ++number;
-        }
+      for (const glm::dvec3& drop : held.drops) {
+        const double above = drop.y + a.y, below = drop.y + b.y;
+        if (!(above > w.water_m && below <= w.water_m)) continue;
+        const glm::dvec3 lands = drop + glm::mix(a, b, (above - w.water_m) / (above - below));
+        const glm::dvec2 place(lands.x, lands.z);
+        if (glm::all(glm::greaterThan(place, w.low)) && glm::all(glm::lessThan(place, w.high)))
+          found.push_back({place, c.diameter_mm, c.fall_speed_mps, tick});
       }
-      i = end;
     }
   }
-  return impacts;
+  return found;
+}
+
+std::vector<RippleImpact> field_impacts(const FrameRipples& frame, std::int64_t first, std::int64_t last,
+                                        std::int64_t since, int cells) {
+  FieldDrops drops;
+  return drops.impacts(frame, first, last, since, cells);
 }
 
 RippleSeedGpu seed_of(const RippleImpact& impact, glm::dvec2 place_cells, double cell_m,

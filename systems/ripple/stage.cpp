@@ -102,9 +102,22 @@ Result<void> RippleStage::load(int cells, int layers, double rings) {
   look.name = "look";
   look.slots = {{"ripples", SlotAccess::read, true}};
   look.side_effect = true;
+  look.shaders = {{"ask", {{"systems/ripple/ripple_ask.comp.glsl"}, {}}}};
   look.execute = [this](PassContext& context) {
     ran_ = context.has("ripples");
-    if (ran_) map_ = context.texture("ripples").id;
+    if (!ran_) return;
+    map_ = context.texture("ripples").id;
+    if (questions.empty()) return;
+    upload(questions_, std::span<const glm::vec4>(questions));
+    if (answers_.bytes < questions.size() * sizeof(glm::vec4))
+      answers_ = make_buffer(questions.size() * sizeof(glm::vec4));
+    context.bind_texture(8, "ripples");
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 13, questions_.id);
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 14, answers_.id);
+    const Program& program = context.program("ask");
+    program.use();
+    program.set("count", static_cast<unsigned>(questions.size()));
+    program.dispatch(static_cast<int>(questions.size()));
   };
   offers.push_back(std::move(look));
   PassOffer paint;
@@ -113,8 +126,7 @@ Result<void> RippleStage::load(int cells, int layers, double rings) {
   paint.execute = [](PassContext&) {};
   offers.push_back(std::move(paint));
   nlohmann::json table;
-  table["resources"]["ripples"] = {
-      {"format", "rgba16f"}, {"width", cells}, {"height", cells}, {"layers", layers}, {"persistent", true}};
+  table["resources"]["ripples"] = {{"format", "rgba16f"}, {"width", cells}, {"height", cells}, {"layers", layers}};
   table["resources"]["picture"] = {{"format", "rgba8"}, {"width", 1}, {"height", 1}};
   table["passes"] = {{{"pass", "ripples"}, {"ripples", "ripples"}, {"parameters", {{"rings", rings}}}},
                      {{"pass", "look"}, {"ripples", "ripples"}},
@@ -139,6 +151,13 @@ Result<double> RippleStage::draw(Frame f) {
   for (const Timing& t : timer_->collect())
     if (t.name == "ripples") ms = t.milliseconds;
   return ms;
+}
+
+std::vector<glm::vec4> RippleStage::answers() const {
+  std::vector<glm::vec4> all(questions.size());
+  glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+  if (!all.empty()) read_buffer(answers_, all.data(), all.size() * sizeof(glm::vec4));
+  return all;
 }
 
 std::vector<glm::vec4> RippleStage::layer(int layer) const {

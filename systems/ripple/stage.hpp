@@ -44,6 +44,10 @@ class RippleStage {
   // Of the last draw.
   std::vector<glm::vec4> layer(int layer) const;
   int cells() const { return cells_; }
+  // What ripple.glsl says of places (relative to the camera; w: share of the rain that is let through) at the next
+  // draw: slope x and z, variance.
+  std::vector<glm::vec4> questions;
+  std::vector<glm::vec4> answers() const;
   bool ran() const { return ran_; }
 
   Techniques techniques;
@@ -60,6 +64,7 @@ class RippleStage {
   ShaderLibrary shaders_;
   std::unique_ptr<Graph> graph_;
   GLuint map_ = 0;
+  Buffer questions_, answers_;
   int layers_ = 0;
   bool ran_ = false;
   std::uint64_t number_ = 0;

@@ -135,16 +135,19 @@ void SpectralWater::advance(double step_s) {
   }
 }
 
-void SpectralWater::add(glm::dvec2 place_m, double amplitude_m, const std::function<double(double)>& transform) {
-  add(std::vector<glm::dvec3>{{place_m, amplitude_m}}, transform);
+std::vector<double> SpectralWater::shape(const std::function<double(double)>& transform) const {
+  std::vector<double> shape;
+  for (const double k : number_) shape.push_back(transform(k) / (edge_m_ * edge_m_));
+  return shape;
 }
 
-void SpectralWater::add(const std::vector<glm::dvec3>& seeds, const std::function<double(double)>& transform) {
-  if (seeds.empty()) return;
+void SpectralWater::add(glm::dvec2 place_m, double amplitude_m, const std::function<double(double)>& transform) {
+  add({{place_m, amplitude_m}}, shape(transform));
+}
+
+void SpectralWater::add(const std::vector<glm::dvec3>& seeds, const std::vector<double>& shape) {
   const int half = cells_ / 2 + 1;
   const double unit = 2.0 * pi / edge_m_;
-  std::vector<double> shape(number_.size());
-  for (std::size_t i = 0; i < shape.size(); ++i) shape[i] = transform(number_[i]) / (edge_m_ * edge_m_);
   std::vector<Complex> across(static_cast<std::size_t>(half));
   for (const glm::dvec3& seed : seeds) {
     for (int i = 0; i < half; ++i) across[static_cast<std::size_t>(i)] = std::polar(seed.z, -unit * i * seed.x);

@@ -43,10 +43,11 @@ class SpectralWater {
   SpectralWater(const SpectralWater&) = delete;
   SpectralWater& operator=(const SpectralWater&) = delete;
   void advance(double step_s);
-  // A seed at rest, at a place in metres; transform as of seed_transform, times its amplitude.
+  // Of a transform as of seed_transform, for add().
+  std::vector<double> shape(const std::function<double(double)>& transform) const;
+  // Seeds at rest: places in metres and amplitudes.
+  void add(const std::vector<glm::dvec3>& place_amplitude, const std::vector<double>& shape);
   void add(glm::dvec2 place_m, double amplitude_m, const std::function<double(double)>& transform);
-  // Adds many of one transform: cheaper.
-  void add(const std::vector<glm::dvec3>& place_amplitude, const std::function<double(double)>& transform);
   // Heights, row by row (z outer), and slopes dz/dx, dz/dz.
   std::vector<double> heights() const;
   std::vector<glm::dvec2> slopes() const;
