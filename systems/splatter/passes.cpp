@@ -3,6 +3,7 @@
 #include <cmath>
 #include <string>
 
+#include "engine/core/random.hpp"
 #include "systems/drops/optics.hpp"
 #include "systems/drops/sums.hpp"
 #include "systems/splatter/crowns.hpp"
@@ -94,6 +95,11 @@ void set_time(const Program& program, const Frame& frame, bool software) {
   program.set("in_slot_s", static_cast<float>(frame.time_s - slot * slot_s));
   program.set("window_s", std::clamp(frame.camera.exposure_s, 1e-3f, static_cast<float>(slot_s)));
   program.set("slots", software ? 2 : 3);
+  for (int i = 0; i < 3; ++i) {
+    const auto when = static_cast<std::uint32_t>(static_cast<std::int64_t>(slot)) - static_cast<std::uint32_t>(i);
+    const glm::vec4 random = random_float4(glm::uvec4(when, 0x5917u, frame.rain->seed, 0u));
+    program.set("shifts[" + std::to_string(i) + "]", glm::vec2(random));
+  }
 }
 
 void make_shell_array(KeptShape& kept) {
@@ -251,15 +257,15 @@ void draw_halos(SplatterState& s, PassContext& context) {
   const float layer = frame.techniques.share(Effect::halos, HaloRung::layer);
   const float fins = frame.techniques.share(Effect::halos, HaloRung::fins);
   // Four heights of the mist at least three pixels tall; those that are just so are faint, so that none pops.
-  constexpr float least_px = 2.0f;
+  const float least_px = s.software ? 4.0f : 2.0f;
   const float feature_m = 4.0f * frame.splatter->mist.height_m;
-  std::vector<PlacedCatcher> placed =
-      place_catchers(s.shapes, frame, context.width, context.height, feature_m, least_px,
-                     8.0f * frame.splatter->mist.height_m, s.software ? 3 : 8, most_misty);
+  std::vector<PlacedCatcher> placed = place_catchers(s.shapes, frame, context.width, context.height, feature_m,
+                                                     least_px, 8.0f * frame.splatter->mist.height_m, s.software ? 2 : 8,
+                                                     s.software ? most_misty / 3 : most_misty);
   if (placed.empty()) return;
   bind_rain_optics(*s.optics, frame);
   int steps = static_cast<int>(context.parameter("steps"));
-  if (steps <= 0) steps = s.software ? 10 : 24;
+  if (steps <= 0) steps = s.software ? 8 : 16;
   for (PlacedCatcher& p : placed)
     p.gpu.mist.x *=
         std::clamp(feature_m * frame.uniforms.lens.z / (least_px * std::max(p.distance_m, 0.01f)) - 1.0f, 0.0f, 1.0f);

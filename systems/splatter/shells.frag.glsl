@@ -7,12 +7,14 @@ layout(location = 2) in float shell_struck;
 uniform float height_m, thickness_m;
 layout(location = 0) out vec4 out_colour;
 
+float struck_here() { return shell_struck; }
+
 void main() {
   if (shell_struck <= 0.0) discard;
   vec3 normal = normalize(shell_normal);
   float ring_px = 2.0 * float(SPLATTER_REACH) * catcher.crown.y * frame.lens.z / length(shell_place);
   float near = smoothstep(2.0, 6.0, ring_px) * catcher.shells.w;
-  float depth = rings(local_place(shell_place), local_way(normal), height_m, thickness_m, catcher.crown.x * shell_struck);
+  float depth = rings(local_place(shell_place), local_way(normal), vec3(0.0), height_m, 1, thickness_m, thickness_m);
   float opacity = 1.0 - exp(-depth * near);
   if (opacity <= 0.0) discard;
   vec3 light = drop_ambient(normalize(shell_place)) + droplet_lamps(shell_place);

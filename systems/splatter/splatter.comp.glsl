@@ -20,6 +20,9 @@ vec3 unit_from_octahedral(vec2 p) {
   return normalize(n);
 }
 
+vec3 own_place, own_normal;
+float struck_here() { return use_occlusion ? deposit(own_place, own_normal) : max(own_normal.y, 0.0); }
+
 void main() {
   ivec2 texel = first_pixel + ivec2(gl_GlobalInvocationID.xy);
   if (any(greaterThan(texel, last_pixel))) return;
@@ -37,19 +40,14 @@ void main() {
   float ring_px = 2.0 * float(SPLATTER_REACH) * catcher.crown.y * frame.lens.z / distance_m;
   float near = smoothstep(2.0, 6.0, ring_px) * catcher.shells.w;
   if (facing <= 0.02 || near <= 0.0) return;
-  float struck = use_occlusion ? deposit(place, world_normal) : max(world_normal.y, 0.0);
-  if (struck <= 0.0) return;
-
-  vec3 normal = local_way(world_normal), slide = local_way(view) / max(facing, 0.1);
+  own_place = place;
+  own_normal = world_normal;
+  vec3 normal = local_way(world_normal);
+  // What a metre of height moves the place that a ray crosses, seen along the normal.
+  vec3 slide = local_way(view) / max(facing, 0.1) - normal;
   int shells = int(catcher.shells.x);
   float thickness = catcher.shells.y / float(shells);
-  float sum = 0.0;
-  for (int i = 0; i < shells; ++i) {
-    float height = (float(i) + 0.5) * thickness;
-    // Where the ray crosses this shell, seen along the normal.
-    vec3 above = at + slide * height - normal * height;
-    sum += rings(above, normal, height, thickness / max(facing, 0.25), catcher.crown.x * struck);
-  }
+  float sum = rings(at, normal, slide, 0.5 * thickness, shells, thickness, thickness / max(facing, 0.25));
   if (sum <= 0.0) return;
   sum *= near;
   float opacity = 1.0 - exp(-sum);
