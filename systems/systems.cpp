@@ -341,6 +341,10 @@ std::vector<ChartOffer> all_charts() {
       {"wetness", "films of water on surfaces, against rays", chart_wet},
       {"reflections", "what wet ground mirrors, against rays",
        [](const ChartRun& run) { return chart_reflections(run, all_passes); }},
+      {"mirrors", "still water and panes as planar mirrors, against rays",
+       [](const ChartRun& run) { return chart_mirrors(run, all_passes()); }},
+      {"probes", "what moving cars mirror, against rays",
+       [](const ChartRun& run) { return chart_probes(run, all_passes()); }},
       {"near_drops", "drops near the eye, by maps and by closed form, against traced ones", chart_near_drops},
   };
 }

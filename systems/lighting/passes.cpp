@@ -84,7 +84,7 @@ PassOffer probes(State state) {
   return {"probes",
           "cube maps about moving objects: what they mirror",
           {{"probes", SlotAccess::write}, {"shadow_atlas", SlotAccess::read, true}},
-          {{"step_m", 1.0}},  // of the grid of places that captures are made at
+          {{"step_m", 1.0}},  // of the grid of places that captures are made at: chart `probes`
           {{"surfaces",
             {{"systems/geometry/gbuffer.vert.glsl", "systems/geometry/gbuffer.frag.glsl"},
              {"MATERIAL_VARIANT " + std::to_string(static_cast<unsigned>(variant_general))}}},
