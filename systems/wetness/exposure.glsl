@@ -50,7 +50,7 @@ float exposure_by(uint map, vec3 place, vec3 normal, vec3 spread) {
   float here = covered_m(map, off), before = covered_m(map, off - reach), behind = covered_m(map, off + reach);
   float most = max(here, max(before, behind));
   float least = min(here, min(before, behind));
-  float open = least > 0.0 ? 0.0 : 1.0;
+  float open = open_about(map, off);  // edges along the wind are as soft as a texel
   bool mixed = caught > 0.0 && most > 0.0 && least <= 0.0;
   // A loop for an if: software OpenGL leaves a loop that no pixel is in, but walks through both sides of a branch.
   for (int once = 0; once < (mixed ? 1 : 0); ++once) {
