@@ -32,7 +32,26 @@ struct Extraction {
   double time_s;
   std::vector<Seen> seen;
   FrameDrips frame;
+  // Wind at whole steps of time, from the oldest on: a drop's is between two of them.
+  std::int64_t first_wind = 0;
+  std::vector<glm::dvec3> winds;
 };
+
+constexpr double winds_per_s = 30.0;
+
+void know_winds(Extraction& x) {
+  x.first_wind = static_cast<std::int64_t>(std::floor((x.time_s - drip_memory_s) * winds_per_s)) - 1;
+  const auto last = static_cast<std::int64_t>(std::ceil(x.time_s * winds_per_s)) + 1;
+  for (std::int64_t i = x.first_wind; i <= last; ++i)
+    x.winds.push_back(drip_wind(x.motion, static_cast<double>(i) / winds_per_s));
+}
+
+glm::dvec3 wind_at(const Extraction& x, double time_s) {
+  const double at = std::clamp(time_s * winds_per_s - static_cast<double>(x.first_wind), 0.0,
+                               static_cast<double>(x.winds.size()) - 1.001);
+  const auto low = static_cast<std::size_t>(at);
+  return glm::mix(x.winds[low], x.winds[low + 1], at - static_cast<double>(low));
+}
 
 // What of one source does not change from site to site.
 struct Edge {
@@ -44,6 +63,10 @@ struct Edge {
   glm::dvec3 wind;
   std::vector<std::uint16_t> clusters;  // of (piece, bucket): 1 + number, 0: none yet
   int buckets = 1;
+  // Where drops land, as looked up last.
+  const std::vector<float>* last = nullptr;
+  glm::ivec3 cell{0};
+  std::uint32_t pose = 0;
 };
 
 struct Fallen {
@@ -90,11 +113,15 @@ void add_drop(Extraction& x, Edge& e, const DripSite& site, int index, const Fal
   const DripPose& pose = pose_at(s, f.detach_s);
   const glm::dvec3 lip(pose.matrix * glm::vec4(static_cast<float>(site.along_m), 0.0f, 0.0f, 1.0f));
   // The air as it was when it let go: a fall takes a second or two, a gust several.
-  const glm::dvec3 air = drip_wind(x.motion, f.detach_s) * double(s.set.wind);
+  const glm::dvec3 wind = wind_at(x, f.detach_s), air = wind * double(s.set.wind);
   const double blows = glm::length(air);
-  double ground = longest_fall_m;
-  if (x.motion.surfaces)
-    ground = x.motion.surfaces->falls(s, pose, drip_wind(x.motion, f.detach_s))[static_cast<std::size_t>(index)];
+  // Most drops let go in the same cell of wind as the drop before.
+  if (const glm::ivec3 cell = DripSurfaces::cell_of(s, wind); !e.last || e.cell != cell || e.pose != pose.number) {
+    e.last = &x.motion.surfaces->falls(s, pose, wind);
+    e.cell = cell;
+    e.pose = pose.number;
+  }
+  const double ground = (*e.last)[static_cast<std::size_t>(index)];
   const double diameter = diameter_mm_of(f.volume_m3 / group), terminal = terminal_speed_mps(diameter);
   const auto place = [&](double age) {
     const DripFall fall = fall_after(terminal, age, blows);
@@ -197,9 +224,7 @@ bool look_at_edge(Extraction& x, Edge& e) {
     return glm::length(x.camera.position_m - glm::clamp(x.camera.position_m, l, h));
   };
   if (distance(longest_fall_m, 0.0) > drip_reach_m) return false;
-  e.wind = drip_wind(x.motion, x.time_s);
-  static const std::vector<float> none;
-  if (!x.motion.surfaces) return false;
+  e.wind = wind_at(x, x.time_s);
   e.falls = &x.motion.surfaces->falls(s, s.poses.back(), e.wind);
   const double fall = *std::max_element(e.falls->begin(), e.falls->end());
   // As far as wind carries a drop.
@@ -224,11 +249,7 @@ void add_edge(Extraction& x, const DripSourceMotion& s) {
   const double small = diameter_mm_of(s.drop_m3 * (1.0 - std::min(s.set.jitter, 0.9f)));
   const double window = time_to_fall_s(terminal_speed_mps(small), fall) + (e.near ? landing_memory_s : 0.0);
   const double earliest = water_at(s, x.time_s - std::min(window, drip_memory_s)).drained_m2;
-  for (int i = 0; i < s.sites; ++i) {
-    // Looking one edge's falls up may forget another's.
-    e.falls = &x.motion.surfaces->falls(s, s.poses.back(), e.wind);
-    add_site(x, e, i, earliest);
-  }
+  for (int i = 0; i < s.sites; ++i) add_site(x, e, i, earliest);
 }
 
 }  // namespace
@@ -242,6 +263,9 @@ std::shared_ptr<const FrameDrips> make_frame_drips(const DripMotion& motion, con
                time_s,
                {},
                {}};
+  if (!motion.surfaces) return nullptr;
+  motion.surfaces->forget();
+  know_winds(x);
   for (const DripSourceMotion& s : motion.sources) add_edge(x, s);
   FrameDrips& f = x.frame;
   f.reach_m = static_cast<float>(drip_reach_m);

@@ -93,7 +93,7 @@ Frame DripStage::frame(const DripSet& set, int width, int height, double time_s,
   f.time_s = time_s;
   f.width = width;
   f.height = height;
-  f.camera.position_m = {0.0, 1.9, set.camera_away_m};
+  f.camera.position_m = {0.0, 3.0 - 0.4 * set.camera_away_m, set.camera_away_m};
   f.camera.vertical_fov_rad = 1.0f;
   f.camera.exposure_s = 1.0f / 60.0f;
   f.camera.exposure_ev100 = 0.0f;

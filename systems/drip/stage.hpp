@@ -14,7 +14,7 @@
 
 namespace petrichor {
 
-// An edge along x, 3 m over a floor, seen from a few metres at a height of 1.7 m; two lamps stand behind it.
+// An edge along x, 3 m over a floor, seen from a little below; two lamps stand behind it.
 struct DripSet {
   DripSource source;
   float rain_mm_per_hour = 20.0f;

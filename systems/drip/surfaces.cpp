@@ -11,6 +11,8 @@
 
 namespace petrichor {
 
+constexpr double cell = 0.5;  // m/s
+
 struct DripSurfaces::Impl {
   RTCDevice device = nullptr;
   RTCScene scene = nullptr;
@@ -71,12 +73,11 @@ DripSurfaces::~DripSurfaces() {
 
 const std::vector<float>& DripSurfaces::falls(const DripSourceMotion& s, const DripPose& pose,
                                               const glm::dvec3& wind_mps) {
-  constexpr double cell = 0.5, own_edge_m = 0.05;
-  const int cx = static_cast<int>(std::lround(wind_mps.x * s.set.wind / cell));
-  const int cz = static_cast<int>(std::lround(wind_mps.z * s.set.wind / cell));
+  constexpr double own_edge_m = 0.05;
+  const glm::ivec3 at = cell_of(s, wind_mps);
+  const int cx = at.x, cz = at.z;
   const Key key{s.life, s.edge, pose.number, cx, cz};
   if (const auto found = known_.find(key); found != known_.end()) return found->second;
-  if (known_.size() > 1024) known_.clear();
   const glm::dvec3 wind(cell * cx, 0.0, cell * cz);
   const double terminal = terminal_speed_mps(diameter_mm_of(s.drop_m3));
   std::vector<float> falls(static_cast<std::size_t>(s.sites), static_cast<float>(longest_fall_m));
@@ -100,6 +101,15 @@ const std::vector<float>& DripSurfaces::falls(const DripSourceMotion& s, const D
     }
   }
   return known_.emplace(key, std::move(falls)).first->second;
+}
+
+glm::ivec3 DripSurfaces::cell_of(const DripSourceMotion& s, const glm::dvec3& wind_mps) {
+  return {static_cast<int>(std::lround(wind_mps.x * s.set.wind / cell)), 0,
+          static_cast<int>(std::lround(wind_mps.z * s.set.wind / cell))};
+}
+
+void DripSurfaces::forget() {
+  if (known_.size() > 1024) known_.clear();
 }
 
 }  // namespace petrichor

@@ -31,9 +31,11 @@ class DripSurfaces {
   DripSurfaces& operator=(const DripSurfaces&) = delete;
 
   // Metres below each site at which its drops land, in wind of about that velocity (its cell of 0.5 m/s);
-  // longest_fall_m where there is nothing. A pure function of its arguments that is remembered; valid until the next
-  // call.
+  // longest_fall_m where there is nothing. A pure function of its arguments that is remembered; valid until
+  // forget().
   const std::vector<float>& falls(const DripSourceMotion&, const DripPose&, const glm::dvec3& wind_mps);
+  static glm::ivec3 cell_of(const DripSourceMotion&, const glm::dvec3& wind_mps);
+  void forget();  // where more is remembered than is needed
 
  private:
   struct Impl;
