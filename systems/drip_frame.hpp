@@ -46,7 +46,7 @@ struct FrameDrips {
   std::vector<DripCluster> clusters;
   std::vector<DripLanding> landings;  // near the camera, seen or not; by time, the oldest first
   float reach_m = 0.0f;               // out to where drops are drawn
-  float shows_world_px = 1.0f;        // radius of its image above which the refracting rung shows the world in a drop
+  float shows_world_px = 0.5f;        // radius of its image above which the refracting rung shows the world in a drop
 };
 
 }  // namespace petrichor

@@ -14,9 +14,9 @@ Ladder drips_ladder() {
   l.error_measure = "root mean square of luminance over the picture; no drips: 1";
   l.rungs = {
       {"none", "no drips", {}, 0.0, 1.0},
-      {"billboards", "screen-aligned billboards with a normal map", {"drips_over"}, 1.0, 0.6},
-      {"streaks", "streaks as long as the exposure, by the rain's own optics", {"drips"}, 1.0, 0.5},
-      {"refracting", "streaks, and those of two pixels and more show the world", {"drips", "drips_over"}, 1.4, 0.4}};
+      {"billboards", "screen-aligned billboards with a normal map", {"drips_over"}, 4.0, 0.79},
+      {"streaks", "streaks as long as the exposure, by the rain's own optics", {"drips"}, 1.2, 0.79},
+      {"refracting", "streaks, and those a pixel wide and more show the world", {"drips", "drips_over"}, 1.5, 0.54}};
   // Each drop's streak is some tens of pixels of a picture of some 10^5: ten thousand are a picture full of them.
   l.coverage = [](const Frame& frame) {
     return frame.drips && !frame.drips->drops.empty()

@@ -19,7 +19,7 @@ struct DripSet {
   DripSource source;
   float rain_mm_per_hour = 20.0f;
   float camera_away_m = 2.0f;
-  float shows_world_px = 1.0f;  // FrameDrips::shows_world_px
+  float shows_world_px = 0.5f;  // FrameDrips::shows_world_px
   int rows = 1;                 // such edges, one behind the other
   glm::vec3 wall_cd_m2{0.3f};
 };
