@@ -181,6 +181,7 @@ TEST_F(SplashField, RungsGiveTheSameMeanLight) {
       auto set = default_splashes();
       set->secondary_reach_m = 0.0f;
       set->most_splashes = 200000;
+      set->reach_m = 8.0f;
       f.splashes = set;
       f.techniques.set(Effect::splashes, rung);
       f.techniques[Effect::splashes].from = static_cast<std::uint8_t>(from);
