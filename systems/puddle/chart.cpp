@@ -169,12 +169,11 @@ Result<void> chart_puddles(const ChartRun& run) {
   stage.kinds = {WetMaterialGpu{}, ground};
   if (auto loaded = stage.load(); !loaded) return loaded;
   const std::vector<Setting> settings{
-      {PuddleRung::none, "", PuddleShape::bowl, 0.0f, minute_s},
-      {PuddleRung::masks, "as printed: always full", PuddleShape::bowl, 0.0f, minute_s},
+      {PuddleRung::masks, "always full", PuddleShape::bowl, 0.0f, minute_s},
       {PuddleRung::filled, "tub", PuddleShape::tub, 0.0f, minute_s},
       {PuddleRung::filled, "paraboloid", PuddleShape::bowl, 0.5f, minute_s},
-      {PuddleRung::filled, "bowl of measured mean depth, 60 s steps", PuddleShape::bowl, 0.0f, minute_s},
-      {PuddleRung::filled, "the same, 1/60 s steps", PuddleShape::bowl, 0.0f, 1.0 / 60.0}};
+      {PuddleRung::filled, "bowl, 60 s steps", PuddleShape::bowl, 0.0f, minute_s},
+      {PuddleRung::filled, "bowl, 1/60 s steps", PuddleShape::bowl, 0.0f, 1.0 / 60.0}};
   Chart chart;
   chart.name = "puddles";
   chart.effect = "puddles";
