@@ -104,7 +104,7 @@ std::vector<SystemEntry<SystemContext>> all_systems() {
        .run = [](SystemContext& c) { simulate_wetness(c.registry, c.time_s, c.step_s); }},
       {.name = "ripples",
        .phase = Phase::simulate,
-       .reads = {"emitter", "rain_motion", "drip_motion", "time"},
+       .reads = {"emitter", "wind", "ripples", "puddle", "wader", "camera", "world_transform", "time"},
        .writes = {"ripple_history"},
        .needs = {"emitter"},
        .after = {"rainfall", "drips"},

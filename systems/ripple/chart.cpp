@@ -31,7 +31,7 @@ const std::vector<Setting>& settings() {
       {RippleRung::rings, "rings", "48 rings", 256, 3, 48},
       {RippleRung::rings, "rings", "256 rings", 256, 3, 256},
       {RippleRung::rings, "rings", "all", 256, 3, 100000},
-      {RippleRung::euler, "euler", "C = 0.48", 256, 3, 0, false, false, false},
+      {RippleRung::euler, "euler", "C = 0.67", 256, 3, 0, false, false, false},
       {RippleRung::verlet5, "verlet5", "64^2", 64},
       {RippleRung::verlet5, "verlet5", "128^2", 128},
       {RippleRung::verlet5, "verlet5", "256^2", 256},

@@ -17,11 +17,11 @@ Ladder ripples_ladder() {
   // Figures of `petrichor chart ripples`.
   l.rungs = {
       {"none", "still water", {}, 0.0, 1.0, true},
-      {"rings", "the strongest rings, stamped in closed form", {"ripples"}, 0.05, 0.85, true},
-      {"euler", "a lattice by forward Euler as published: it blows up at any step", {"ripples"}, 0.06, 5.0, false},
-      {"verlet5", "a lattice by Verlet's scheme, five points", {"ripples"}, 0.06, 0.83, true},
-      {"verlet9", "the same with nine points, round rings", {"ripples"}, 0.06, 0.82, true},
-      {"near_tile", "and a tile of the world near the eye with the field's own drops", {"ripples"}, 0.12, 0.6, true}};
+      {"rings", "the strongest rings, stamped in closed form", {"ripples"}, 0.7, 0.87, true},
+      {"euler", "a lattice by forward Euler as published: it blows up at any step", {"ripples"}, 1.1, 20.0, false},
+      {"verlet5", "a lattice by Verlet's scheme, five points", {"ripples"}, 1.1, 0.79, true},
+      {"verlet9", "the same with nine points, round rings", {"ripples"}, 1.1, 0.76, true},
+      {"near_tile", "and a tile of the world near the eye with the field's own drops", {"ripples"}, 3.0, 0.73, true}};
   l.coverage = [](const Frame& frame) { return frame.ripples && frame.ripples->seen ? water_coverage(frame) : 0.0; };
   return l;
 }
