@@ -6,7 +6,7 @@
 
 namespace petrichor {
 
-void add_lit_box(Model& model, glm::vec3 low, glm::vec3 high, const StageLook& look) {
+void add_lit_box(Model& model, glm::vec3 low, glm::vec3 high, const StageLook& look, int only) {
   Material material;
   material.base_colour = glm::vec4(look.albedo, 1.0f);
   material.metallic = 0.0f;
@@ -17,6 +17,7 @@ void add_lit_box(Model& model, glm::vec3 low, glm::vec3 high, const StageLook& l
   model.materials.push_back(material);
   for (int axis = 0; axis < 3; ++axis)
     for (int side = 0; side < 2; ++side) {
+      if (only >= 0 && only != 2 * axis + side) continue;
       const int u = (axis + 1) % 3, v = (axis + 2) % 3;
       const auto base = static_cast<std::uint32_t>(p.vertices.size());
       for (int corner = 0; corner < 4; ++corner) {
@@ -68,10 +69,10 @@ StageScene night_street(float roughness, float eye_m) {
   for (int i = 0; i < 5; ++i) {  // shop windows, and lit ones above; a sign
     const float z = -5.0f - 11.0f * static_cast<float>(i);
     const glm::vec3 warm(60, 42, 24), cool(20, 34, 52);
-    add_lit_box(s.model, {-6.5f, 0.6f, z - 3}, {-6.45f, 2.8f, z}, {glm::vec3(0.0f), 1.0f, i % 2 ? cool : warm});
-    add_lit_box(s.model, {6.45f, 4.2f, z - 5}, {6.5f, 5.8f, z - 4}, {glm::vec3(0.0f), 1.0f, warm});
+    add_lit_box(s.model, {-6.5f, 0.6f, z - 3}, {-6.45f, 2.8f, z}, {glm::vec3(0.0f), 1.0f, i % 2 ? cool : warm}, 1);
+    add_lit_box(s.model, {6.45f, 4.2f, z - 5}, {6.5f, 5.8f, z - 4}, {glm::vec3(0.0f), 1.0f, warm}, 0);
   }
-  add_lit_box(s.model, {6.2f, 2.6f, -14}, {6.3f, 3.4f, -11}, {glm::vec3(0.0f), 1.0f, {110, 8, 20}});
+  add_lit_box(s.model, {6.2f, 2.6f, -14}, {6.3f, 3.4f, -11}, {glm::vec3(0.0f), 1.0f, {110, 8, 20}}, 0);
   const StageLook iron{glm::vec3(0.03f), 1.0f, {}};
   const float away[4] = {8, 16, 30, 50};
   for (int i = 0; i < 4; ++i) {

@@ -25,8 +25,8 @@ struct StageLook {
   float roughness = 1.0f;
   glm::vec3 emissive{0.0f};  // cd/m2
 };
-// A box in a material and a mesh of its own.
-void add_lit_box(Model&, glm::vec3 low, glm::vec3 high, const StageLook&);
+// A box in a material and a mesh of its own; only: 2 * axis + side, its one face there (a pane); -1: all six.
+void add_lit_box(Model&, glm::vec3 low, glm::vec3 high, const StageLook&, int only = -1);
 
 struct StageScene {
   std::string name, title;
