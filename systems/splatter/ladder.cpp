@@ -55,8 +55,8 @@ Ladder halos_ladder() {
       "the flights, with drag, of the droplets of every class's splashes, seen through each pixel (Monte Carlo, CPU)";
   l.error_measure = "root mean square difference of the mist's picture; no mist at all: 1";
   l.rungs = {{"none", "no mist", {}, 0.0, 1.0},
-             {"layer", "a thin layer of mist in closed form over each object's heights", {"halos"}, 3.0, 0.3},
-             {"fins", "fins along silhouettes (Tatarchuk and Isidoro 2006)", {"halos"}, 2.0, 0.7}};
+             {"layer", "a thin layer of mist in closed form over each object's heights", {"halos"}, 3.0, 0.27},
+             {"fins", "fins along silhouettes (Tatarchuk and Isidoro 2006)", {"halos"}, 2.5, 0.57}};
   l.coverage = [](const Frame& frame) {
     return frame.splatter ? 0.5 * strength(frame) * covered(frame, 30.0f, 4.0f * frame.splatter->mist.height_m) : 0.0;
   };

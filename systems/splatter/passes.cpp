@@ -257,7 +257,8 @@ void draw_halos(SplatterState& s, PassContext& context) {
   const float layer = frame.techniques.share(Effect::halos, HaloRung::layer);
   const float fins = frame.techniques.share(Effect::halos, HaloRung::fins);
   // Four heights of the mist at least three pixels tall; those that are just so are faint, so that none pops.
-  const float least_px = s.software ? 4.0f : 2.0f;
+  float least_px = context.parameter("least_px");
+  if (!(least_px > 0.0f)) least_px = s.software ? 4.0f : 2.0f;
   const float feature_m = 4.0f * frame.splatter->mist.height_m;
   std::vector<PlacedCatcher> placed = place_catchers(s.shapes, frame, context.width, context.height, feature_m,
                                                      least_px, 8.0f * frame.splatter->mist.height_m, s.software ? 2 : 8,
@@ -311,7 +312,7 @@ std::vector<PassOffer> splatter_passes(const DropPainting& painting) {
                  {"depth", SlotAccess::read},
                  {"occlusion_map", SlotAccess::read, true},
                  {"environment", SlotAccess::read, true}};
-  halos.parameters = {{"steps", 0.0}};
+  halos.parameters = {{"steps", 0.0}, {"least_px", 0.0}};
   halos.shaders = both("layer", {folder + "mist_layer.comp.glsl"});
   halos.shaders.merge(both("fins", {folder + "fins.vert.glsl", folder + "fins.frag.glsl"}));
   halos.wanted = [](const Frame& frame) {

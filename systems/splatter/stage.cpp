@@ -182,7 +182,7 @@ Result<void> SplatterStage::draw() {
   frame.splatter = frame.rain && !marks.empty() ? std::shared_ptr<const FrameSplatter>(splatter) : nullptr;
   if (loaded_steps_ != steps) {
     for (nlohmann::json& pass : table_["passes"])
-      if (pass["pass"] == "halos") pass["parameters"] = {{"steps", steps}};
+      if (pass["pass"] == "halos") pass["parameters"] = {{"steps", steps}, {"least_px", 0.01}};  // whole, however far
     if (auto loaded = graph_->load_table(table_, "the stage of splatter"); !loaded) return loaded;
     loaded_steps_ = steps;
   }
