@@ -8,7 +8,8 @@
 
 namespace petrichor {
 
-// Rows halos/layer, halos/fins, splatter/shells, splatter/published; n: marked objects in view (4 cars from 3 m on).
+// Rows halos/layer, halos/fins, splatter/shells, splatter/as_printed, and both /close (a body fills the
+// picture); n: marked objects in view.
 Result<std::vector<BenchRow>> bench_halos(int width, int height, int frames, bool software_gl);
 
 }  // namespace petrichor

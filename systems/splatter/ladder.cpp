@@ -38,8 +38,8 @@ Ladder splatter_ladder() {
   l.effect = Effect::splatter;
   l.name = "splatter";
   l.meaning = "rings of splatter on marked objects";
-  l.truth = "the crown of every impact on a plate, integrated through 64 heights and 64 instants of the exposure";
-  l.error_measure = "root mean square difference of optical depth; no splatter at all: 1";
+  l.truth = "none yet: rings are not charted against a truth";
+  l.error_measure = "a guess, not measured";
   l.rungs = {{"none", "no splatter", {}, 0.0, 1.0},
              {"shells", "shells of spreading rings (Tatarchuk and Isidoro 2006)", {"splatter"}, 2.0, 0.3}};
   l.coverage = [](const Frame& frame) { return 0.5 * strength(frame) * covered(frame, 6.0f, 1.0f); };
