@@ -3,7 +3,7 @@
 // distance to the surface that ends the view, for the depth-aware enlargement in atmosphere.comp.glsl.
 #include "systems/atmosphere/airlight.h"
 #include "systems/geometry/position.glsl"
-#include "systems/lighting/brdf.h"
+#include "systems/brdf.h"
 #include "systems/lighting/shadow.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;

@@ -2,7 +2,7 @@
 // Lights one captured view of the surroundings: six small G-buffers side by side become radiance, with 1 / distance of
 // what is seen, 1/m, in its alpha (0: the sky).
 #define BRIGHTEST_CAPTURED_CD_M2 30.0
-#include "systems/lighting/brdf.h"
+#include "systems/brdf.h"
 #include "systems/lighting/lighting_shared.h"
 #include "systems/lighting/shadow.glsl"
 #include "systems/sky.glsl"

@@ -2,7 +2,7 @@
 #ifndef SYSTEMS_LIGHTING_FACING_GLSL
 #define SYSTEMS_LIGHTING_FACING_GLSL
 #include "systems/geometry/gbuffer.glsl"
-#include "systems/lighting/brdf.h"
+#include "systems/brdf.h"
 
 struct Facing {  // what a pixel needs for every light
   vec3 place;

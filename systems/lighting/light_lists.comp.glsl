@@ -5,7 +5,7 @@
 // that keeps the long mirror image of a lamp on a wet road 80 m away, and drops its glow on the wall beside it.
 #define GBUFFER_FIRST_UNIT 0
 #include "systems/geometry/gbuffer.glsl"
-#include "systems/lighting/brdf.h"
+#include "systems/brdf.h"
 #include "systems/lighting/lighting_shared.h"
 #ifdef SHADOWS
 #include "systems/lighting/shadow.glsl"

@@ -3,7 +3,7 @@
 // alpha; 0 outside the rectangle that was drawn. Lamps with shadows, the surroundings' diffuse light, what shines by
 // itself, mist on the way from the mirror, and the sky. Lamps are chosen tile by tile: those that could show in none of
 // the tile's pixels are left out.
-#include "systems/lighting/brdf.h"
+#include "systems/brdf.h"
 #include "systems/lighting/lighting_shared.h"
 #ifdef SHADOWS
 #include "systems/lighting/shadow.glsl"

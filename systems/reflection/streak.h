@@ -9,7 +9,7 @@
 // the tail (physics 10a) all come from the map between l and m; none is fitted.
 #ifndef SYSTEMS_REFLECTION_STREAK_H
 #define SYSTEMS_REFLECTION_STREAK_H
-#include "systems/lighting/brdf.h"
+#include "systems/brdf.h"
 
 #ifdef __cplusplus
 namespace petrichor::shading {

@@ -1,7 +1,7 @@
 #version 450 core
 // Lights the capture: six small G-buffers side by side become a cube of radiance, with 1 / distance in its alpha. Lamps
 // are discs of the illuminance that they give at the capture: through a drop they are its brightest spots.
-#include "systems/lighting/brdf.h"
+#include "systems/brdf.h"
 #ifdef SHADOWS
 #include "systems/lighting/shadow.glsl"
 #else

@@ -1,5 +1,5 @@
 // The reflection model against exact optics and against the books of energy.
-#include "systems/lighting/brdf.h"
+#include "systems/brdf.h"
 
 #include <gtest/gtest.h>
 

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "systems/atmosphere/airlight.h"
-#include "systems/lighting/brdf.h"
+#include "systems/brdf.h"
 #include "systems/lighting/chosen_lights.hpp"
 #include "tests/systems/lighting/stage.hpp"
 

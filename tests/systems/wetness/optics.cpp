@@ -5,7 +5,7 @@
 #include <cmath>
 #include <random>
 
-#include "systems/lighting/brdf.h"
+#include "systems/brdf.h"
 
 namespace petrichor {
 namespace {

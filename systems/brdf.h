@@ -4,8 +4,8 @@
 // height-correlated visibility, Heitz 2014, JCGT 3(2); the lens-shaped correction of Schlick's Fresnel for
 // dielectrics, shared physics section 3; sphere lights, Karis 2013, "Real Shading in Unreal Engine 4"; the
 // directional albedo of GGX, Karis 2014, "Physically Based Shading on Mobile" (after Lazarov).
-#ifndef SYSTEMS_LIGHTING_BRDF_H
-#define SYSTEMS_LIGHTING_BRDF_H
+#ifndef SYSTEMS_BRDF_H
+#define SYSTEMS_BRDF_H
 
 #ifdef __cplusplus
 #include <glm/glm.hpp>
