@@ -25,6 +25,9 @@ void make_probe_targets(EnvironmentProbe& probe) {
   probe.radiance = make_texture_2d(width, height, GL_RGBA16F);
   probe.environment = make_texture_2d(ENVIRONMENT_WIDTH, ENVIRONMENT_HEIGHT, GL_RGBA16F);
   clear_texture(probe.environment);
+  probe.own_light = make_texture_2d(width, height, GL_R16F);
+  probe.own_environment = make_texture_2d(ENVIRONMENT_LEVELS * ENVIRONMENT_TILE, ENVIRONMENT_TILE, GL_R16F);
+  clear_texture(probe.own_environment);
   const std::array<GLuint, 3> colours{probe.albedo.id, probe.normal.id, probe.emissive.id};
   probe.framebuffer = make_framebuffer(colours, probe.depth.id);
 }
@@ -82,6 +85,7 @@ void light_faces(EnvironmentProbe& probe, const Frame& around, std::span<const i
   glBindTextures(0, 4, inputs);
   if (shadow_atlas) glBindTextureUnit(6, shadow_atlas->id);
   glBindImageTexture(0, probe.radiance.id, 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RGBA16F);
+  glBindImageTexture(1, probe.own_light.id, 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_R16F);
   light.use();
   light.set("near_m", capture_near_m);
   light.dispatch(6 * ENVIRONMENT_FACE, ENVIRONMENT_FACE);
@@ -90,7 +94,9 @@ void light_faces(EnvironmentProbe& probe, const Frame& around, std::span<const i
 
 void filter_mirrored(EnvironmentProbe& probe, const Program& filter) {
   glBindTextureUnit(0, probe.radiance.id);
+  glBindTextureUnit(1, probe.own_light.id);
   glBindImageTexture(0, probe.environment.id, 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RGBA16F);
+  glBindImageTexture(1, probe.own_environment.id, 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_R16F);
   filter.use();
   filter.dispatch(ENVIRONMENT_LEVELS * ENVIRONMENT_TILE, ENVIRONMENT_TILE);
   glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);

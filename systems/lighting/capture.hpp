@@ -22,6 +22,7 @@ struct EnvironmentProbe {
   bool captured = false, lit = false;
   std::uint64_t lighting = 0;  // lighting_hash it is lit for
   Texture depth, albedo, normal, emissive, radiance, environment;
+  Texture own_light, own_environment;  // luminance of what shines by itself, of the faces and filtered
   Framebuffer framebuffer;
 };
 

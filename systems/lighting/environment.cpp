@@ -70,7 +70,7 @@ void update_environment(Environment& environment, const Frame& frame, float spac
   const std::vector<EnvironmentCorner> corners = environment_corners(frame.camera.position_m, spacing_m);
   Frame around;
   bool moved_instances = false;
-  std::array<GLuint, 4> textures{};
+  std::array<GLuint, 8> textures{};  // four captures, and their own light
   glm::vec4 weights(0.0f);
   for (std::size_t i = 0; i < corners.size(); ++i) {
     EnvironmentProbe& probe = find_probe(environment, corners[i].cell);
@@ -90,12 +90,13 @@ void update_environment(Environment& environment, const Frame& frame, float spac
       probe.lighting = lighting;
     }
     textures[i] = probe.environment.id;
+    textures[4 + i] = probe.own_environment.id;
     weights[static_cast<int>(i)] = corners[i].weight;
   }
-  for (std::size_t i = corners.size(); i < 4; ++i) textures[i] = textures[0];
+  for (std::size_t i = corners.size(); i < 4; ++i) textures[i] = textures[0], textures[4 + i] = textures[4];
   if (moved_instances && frame.scene) upload_instances(*frame.scene, frame);
 
-  glBindTextures(0, 4, textures.data());
+  glBindTextures(0, 8, textures.data());
   glBindImageTexture(0, target.id, 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RGBA16F);
   programs.blend.use();
   programs.blend.set("weights", weights);

@@ -1,19 +1,21 @@
 #version 450 core
 // Radiance on six faces -> octahedral tiles, each the mean over a GGX lobe wider than the last (split sum with
-// n = v, Karis 2013), by a fixed spiral of directions. Alpha (1 / distance) is filtered likewise.
+// n = v, Karis 2013), by a fixed spiral of directions. Alpha (1 / distance) and things' own
+// light are filtered likewise.
 #include "systems/lighting/lighting_shared.h"
 #include "systems/lighting/octahedral.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(binding = 0) uniform sampler2D radiance;
+layout(binding = 1) uniform sampler2D own_light;
 layout(binding = 0, rgba16f) uniform writeonly image2D environment;
+layout(binding = 1, r16f) uniform writeonly image2D own_environment;
 
-vec4 radiance_along(vec3 direction) {
+vec2 texel_along(vec3 direction) {
   vec3 place = face_from_direction(direction);
   // Half a texel inside the face, so that filtering takes nothing from its neighbour in the strip.
   vec2 texel = clamp(place.xy * float(ENVIRONMENT_FACE), 0.5, float(ENVIRONMENT_FACE) - 0.5);
-  return textureLod(radiance, (texel + vec2(place.z * float(ENVIRONMENT_FACE), 0.0)) /
-                                  vec2(6 * ENVIRONMENT_FACE, ENVIRONMENT_FACE), 0.0);
+  return (texel + vec2(place.z * float(ENVIRONMENT_FACE), 0.0)) / vec2(6 * ENVIRONMENT_FACE, ENVIRONMENT_FACE);
 }
 
 void main() {
@@ -29,7 +31,7 @@ void main() {
   vec3 up = cross(n, side);
 
   vec4 sum = vec4(0.0);
-  float weights = 0.0;
+  float own = 0.0, weights = 0.0;
   int samples = level == 0 ? 1 : 32;
   for (int i = 0; i < samples; ++i) {
     float u = (float(i) + 0.5) / float(samples);
@@ -40,8 +42,11 @@ void main() {
     vec3 h = side * (cos(angle) * sine) + up * (sin(angle) * sine) + n * cosine;
     vec3 l = 2.0 * dot(n, h) * h - n;
     float weight = max(dot(n, l), 0.0);
-    sum += radiance_along(l) * weight;
+    vec2 from = texel_along(l);
+    sum += textureLod(radiance, from, 0.0) * weight;
+    own += textureLod(own_light, from, 0.0).r * weight;
     weights += weight;
   }
   imageStore(environment, texel, sum / max(weights, 1e-4));
+  imageStore(own_environment, texel, vec4(own / max(weights, 1e-4), 0.0, 0.0, 0.0));
 }

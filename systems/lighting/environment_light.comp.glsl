@@ -1,6 +1,6 @@
 #version 450 core
 // Lights one captured view of the surroundings: six small G-buffers side by side become radiance, with 1 / distance of
-// what is seen, 1/m, in its alpha (0: the sky).
+// what is seen, 1/m, in its alpha (0: the sky), and apart how much of it is a thing's own light.
 #define BRIGHTEST_CAPTURED_CD_M2 30.0
 #include "systems/brdf.h"
 #include "systems/lighting/lighting_shared.h"
@@ -11,6 +11,7 @@ layout(local_size_x = 8, local_size_y = 8) in;
 #define GBUFFER_FIRST_UNIT 0
 #include "systems/geometry/gbuffer.glsl"
 layout(binding = 0, rgba16f) uniform writeonly image2D radiance;
+layout(binding = 1, r16f) uniform writeonly image2D own_light;  // luminance, cd/m2
 
 uniform float near_m;  // of the capture
 
@@ -43,7 +44,9 @@ void main() {
   // Metals shine with what they mirror; their base colour stands for it here.
   // Lamp glass and neon shine through their punctual lights already: what is captured of them is no brighter than a
   // lit window, or each lamp would light the street twice.
-  vec3 lit = surface.albedo * irradiance / PI + min(surface.emissive, vec3(BRIGHTEST_CAPTURED_CD_M2));
+  vec3 own = depth > 0.0 ? min(surface.emissive, vec3(BRIGHTEST_CAPTURED_CD_M2)) : vec3(0.0);
+  vec3 lit = surface.albedo * irradiance / PI + own;
   vec3 result = depth > 0.0 ? lit : sky_radiance(normalize(axial));
   imageStore(radiance, texel, vec4(min(result, vec3(6e4)), depth > 0.0 ? 1.0 / length(place) : 0.0));
+  imageStore(own_light, texel, vec4(dot(own, vec3(0.2126, 0.7152, 0.0722)), 0.0, 0.0, 0.0));
 }

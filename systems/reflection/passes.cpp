@@ -207,7 +207,8 @@ PassOffer reflections(State state) {
 void lay_reflections_over(ReflectionState& state, PassContext& context) {
   const Frame& frame = context.frame;
   const float toyshop = share(frame, ReflectionRung::toyshop);
-  const bool rays = share(frame, ReflectionRung::impostors) + rays_share(frame) > 0.0f;
+  const float drawn = share(frame, ReflectionRung::impostors) + rays_share(frame);
+  const bool rays = drawn > 0.0f;
   const bool mirrors = context.has("mirrors") && share(frame, ReflectionRung::planar) > 0.0f;
   const bool probes = context.has("probes");
   const float edges = context.parameter("published_edges");
@@ -235,6 +236,7 @@ void lay_reflections_over(ReflectionState& state, PassContext& context) {
   if (mirrors) context.bind_texture(mirrors_unit, "mirrors");
   if (probes) context.bind_texture(probes_unit, "probes");
   over.set("toyshop_share", toyshop);
+  over.set("drawn_share", drawn);
   over.set("planar_share", share(frame, ReflectionRung::planar));
   over.set("edge_exponent", context.parameter("edge_exponent"));
   over.set("distortion", context.parameter("distortion"));

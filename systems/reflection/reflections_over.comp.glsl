@@ -22,6 +22,7 @@ layout(binding = 5) uniform sampler2D streaks;
 uniform float toyshop_share;
 uniform float distortion;     // of the place on screen, of its height, by the normal's tilt
 #endif
+uniform float drawn_share;      // of the rungs that fill `reflections`
 uniform float edge_exponent;    // f_o
 uniform float published_edges;  // 1: k_a for all rungs
 
@@ -51,7 +52,10 @@ void lay_over(ivec2 texel, float depth, float mirrors) {
   vec3 reflected = mirrored_share(at, surface.roughness) * mirror_open(at, surface.roughness, surface.occlusion);
   vec3 environment = environment_radiance(at.mirror, surface.roughness) * frame.sky_zenith.w;
   vec4 r = reflection_at(texel, depth);
-  vec3 change = r.rgb - r.a * environment;
+  // The captured surroundings show windows and signs where they stand seen from the capture, not from here: those that
+  // are drawn as themselves are taken out of it.
+  vec3 rest = environment_matt(at.mirror, surface.roughness) * frame.sky_zenith.w;
+  vec3 change = r.rgb - r.a * rest + drawn_share * (rest - environment);
   // Artists' control of edges: f = (1 - n.v)^f_o, k_a = saturate(1 - f^2).
   float k_a = edge_attenuation(at.n_dot_v, edge_exponent);
 #ifdef TOYSHOP
