@@ -26,14 +26,17 @@ vec3 environment_radiance(vec3 direction, float roughness) {
   return mix(environment_level(square, below), environment_level(square, below + 1.0), level - below);
 }
 
-// What of it is left without windows, signs and lamp glass: for passes that draw these where they really are.
-vec3 environment_matt(vec3 direction, float roughness) {
+struct Surroundings {
+  vec3 all;   // mean radiance over the lobe
+  vec3 matt;  // without windows, signs and lamp glass: for passes that draw these where they really are
+};
+Surroundings environment_around(vec3 direction, float roughness) {
   vec2 square = square_from_direction(direction);
   float level = clamp(roughness, 0.0, 1.0) * float(ENVIRONMENT_LEVELS - 1);
   float below = min(floor(level), float(ENVIRONMENT_LEVELS - 2));
   vec4 light = mix(environment_texel(square, below), environment_texel(square, below + 1.0), level - below);
   float all = dot(light.rgb, vec3(0.2126, 0.7152, 0.0722));
-  return light.rgb * clamp(1.0 - light.a / max(all, 1e-6), 0.0, 1.0);
+  return Surroundings(light.rgb, light.rgb * clamp(1.0 - light.a / max(all, 1e-6), 0.0, 1.0));
 }
 
 // Irradiance / pi on a surface with this normal: what a white Lambert surface would shine with.

@@ -154,17 +154,21 @@ void shade_tiles(const LightingState& state, PassContext& context) {
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, TILES_BINDING, state.tiles.id);
   glBindBuffer(GL_DISPATCH_INDIRECT_BUFFER, state.tiles.id);
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT);
-  // The impostors of these rungs are the lamps, too; nothing may shine twice.
+  // The published billboards are the lamps, too, and the other rungs draw windows and signs: nothing may shine twice.
   const Techniques& by = context.frame.techniques;
-  const float lamps_elsewhere = context.has("highlights")
-                                    ? by.share(Effect::reflections, ReflectionRung::toyshop) +
-                                          by.share(Effect::reflections, ReflectionRung::impostors)
-                                    : 0.0f;
+  const float lamps_elsewhere =
+      context.has("highlights") ? by.share(Effect::reflections, ReflectionRung::toyshop) : 0.0f;
+  const float panels_elsewhere = context.has("highlights") && context.frame.reflectors
+                                     ? by.share(Effect::reflections, ReflectionRung::impostors) +
+                                           by.share(Effect::reflections, ReflectionRung::screen_space) +
+                                           by.share(Effect::reflections, ReflectionRung::planar)
+                                     : 0.0f;
   const auto shade = [&](unsigned kind, std::string_view program_name) {
     const Program& program = context.program(program_name);
     program.use();
     program.set("diffuse_gain", context.parameter("diffuse_gain"));
     program.set("lamps_elsewhere", lamps_elsewhere);
+    program.set("panels_elsewhere", panels_elsewhere);
     program.set("list_start", TILES_HEADER + kind * state.list_length);
     glDispatchComputeIndirect(static_cast<GLintptr>(kind * 4 * sizeof(unsigned)));
   };

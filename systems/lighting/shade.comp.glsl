@@ -8,7 +8,7 @@
 #include "systems/lighting/environment.glsl"
 #include "systems/lighting/lighting_shared.h"
 #include "systems/lighting/shadow.glsl"
-#include "systems/reflection/streak.h"
+#include "systems/reflection/mirror_texel.glsl"
 #include "systems/sky.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
@@ -16,6 +16,7 @@ layout(binding = 4) uniform usampler2D light_lists;
 layout(binding = 0, rgba16f) uniform writeonly image2D colour;
 uniform float diffuse_gain;  // multiplies the environment's diffuse light
 uniform float lamps_elsewhere;  // share of the frame whose lamps pass reflections mirrors
+uniform float panels_elsewhere;  // and whose windows and signs
 layout(std430, binding = TILES_BINDING) readonly buffer Tiles { uint tiles[]; };
 uniform uint list_start;  // of this dispatch's kind of tiles; one tile a work group
 
@@ -37,6 +38,11 @@ void main() {
   if (any(greaterThanEqual(texel, ivec2(frame.size.xy)))) return;
   float depth = read_depth(texel);
   Surface surface = read_surface(texel);
+
+  // Ripples finer than a pixel become a wider lobe instead of a flicker.
+  float mirrors = panels_elsewhere > 0.0 && depth > 0.0 ? mirror_share(surface.roughness) : 0.0;
+  for (int once = 0; once < (mirrors > 0.0 ? 1 : 0); ++once)
+    surface.roughness = filtered_roughness(texel, depth, surface.normal, surface.roughness);
 
   Facing at = facing_of(surface, relative_position(vec2(texel) + 0.5, max(depth, 1e-7)));
 
@@ -74,8 +80,9 @@ void main() {
   vec3 radiance = diffuse * irradiance / PI + specular + surface.emissive;
 #ifdef ENVIRONMENT
   float open = mirror_open(at, surface.roughness, surface.occlusion);
+  Surroundings around = environment_around(at.mirror, surface.roughness);
   radiance += (diffuse * environment_diffuse(at.normal) * surface.occlusion * diffuse_gain +
-               reflected * environment_radiance(at.mirror, surface.roughness) * open) * frame.sky_zenith.w;
+               reflected * mix(around.all, around.matt, mirrors * panels_elsewhere) * open) * frame.sky_zenith.w;
 #endif
   imageStore(colour, texel, vec4(depth > 0.0 ? radiance : sky_radiance(-at.view), 1.0));
 }

@@ -8,6 +8,21 @@
 
 ivec2 picture_texel(ivec2 half_texel) { return min(half_texel * 2, ivec2(frame.size.xy) - 1); }
 
+// Roughness of one pixel at full size, with what its block of four holds of ripples.
+float filtered_roughness(ivec2 texel, float depth, vec3 normal, float roughness) {
+  vec3 sum = vec3(0.0);
+  float count = 0.0;
+  for (int i = 0; i < 4; ++i) {
+    ivec2 other = min((texel & ~1) + ivec2(i & 1, i >> 1), ivec2(frame.size.xy) - 1);
+    vec3 n = unit_from_octahedral(texelFetch(gbuffer_normal, other, 0).xy * 2.0 - 1.0);
+    bool same = abs(read_depth(other) - depth) < 0.04 * depth && dot(n, normal) > 0.5;
+    sum += same ? n : vec3(0.0);
+    count += same ? 1.0 : 0.0;
+  }
+  float alpha = roughness * roughness, mean_length = count > 0.0 ? length(sum) / count : 1.0;
+  return sqrt(sqrt(widened_alpha2(alpha * alpha, mean_length)));
+}
+
 Surface mirror_surface(ivec2 texel, float depth) {
   Surface s = read_surface(texel);
   vec3 sum = s.normal;

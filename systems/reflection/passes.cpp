@@ -12,15 +12,15 @@ namespace petrichor {
 namespace {
 
 // Texture units of the shaders here beyond those of the G-buffer (0 to 3) and of lighting (6, 7).
-constexpr int light_lists_unit = 4, own_unit = 5, shadow_unit = 6, environment_unit = 7, mirrors_unit = 9,
-              probes_unit = 10;
+constexpr int phases_unit = 4, own_unit = 5, environment_unit = 7, mirrors_unit = 9, probes_unit = 10;
 constexpr int pyramid_levels = 6;
 
 // Of the passes' own; pure functions of the frame, kept only to save making them.
 struct ReflectionState {
-  Buffer reflectors;
-  Texture lists, pyramid, streaks[2], black;
+  Buffer reflectors, tiles;
+  Texture lists, pyramid, phases, streaks[2], black;
   Framebuffer canvas;
+  bool listed = false;  // this frame's tiles, until pass reflections_over has used them
 };
 using State = std::shared_ptr<ReflectionState>;
 
@@ -123,18 +123,40 @@ void draw_pyramid(ReflectionState& state, PassContext& context, int width, int h
   }
 }
 
-void draw_lists(ReflectionState& state, PassContext& context, int width, int height) {
-  const int across = (width + REFLECTION_TILE - 1) / REFLECTION_TILE,
-            down = (height + REFLECTION_TILE - 1) / REFLECTION_TILE;
+// Lists the tiles that have work. every_tile: all that mirror, not only those that a reflector can be seen in.
+void draw_lists(ReflectionState& state, PassContext& context, double threshold, bool every_tile) {
+  const int side = 2 * REFLECTION_TILE;
+  const int across = (context.width + side - 1) / side, down = (context.height + side - 1) / side;
   if (!fits(state.lists, across, down)) state.lists = make_texture_2d(across, down, GL_RGBA32UI);
+  const std::size_t bytes =
+      (REFLECTION_TILES_HEADER + static_cast<std::size_t>(across) * static_cast<std::size_t>(down)) * sizeof(unsigned);
+  if (state.tiles.bytes < bytes) state.tiles = make_buffer(bytes);
+  const unsigned header[REFLECTION_TILES_HEADER] = {0, 1, 1, 0, 0, 1, 1, 0};
+  glNamedBufferSubData(state.tiles.id, 0, sizeof header, header);
+  glBindBufferBase(GL_SHADER_STORAGE_BUFFER, REFLECTION_TILES_BINDING, state.tiles.id);
   const Program& lists = context.program("lists");
   lists.use();
   bind_gbuffer(context, false);
-  lists.set("threshold", context.parameter("threshold"));
+  lists.set("threshold", static_cast<float>(threshold));
+  lists.set("every_tile", every_tile ? 1u : 0u);
   lists.set("backdrop", glm::max(context.frame.sky.horizon_cd_m2, glm::vec3(0.3f)));
   glBindImageTexture(0, state.lists.id, 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RGBA32UI);
   lists.dispatch(across, down);
-  glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
+  glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT |
+                  GL_COMMAND_BARRIER_BIT);
+  state.listed = true;
+}
+
+void dispatch_tiles(const ReflectionState& state, std::size_t command) {
+  glBindBufferBase(GL_SHADER_STORAGE_BUFFER, REFLECTION_TILES_BINDING, state.tiles.id);
+  glBindBuffer(GL_DISPATCH_INDIRECT_BUFFER, state.tiles.id);
+  glDispatchComputeIndirect(static_cast<GLintptr>(command * 4 * sizeof(unsigned)));
+  glBindBuffer(GL_DISPATCH_INDIRECT_BUFFER, 0);
+}
+
+// Whether something but reflectors may show in any tile that mirrors.
+bool shows_everywhere(const Frame& frame) {
+  return rays_share(frame) > 0.0f || share(frame, ReflectionRung::toyshop) > 0.0f || frame.mirrors;
 }
 
 void draw_reflections(ReflectionState& state, PassContext& context) {
@@ -145,63 +167,69 @@ void draw_reflections(ReflectionState& state, PassContext& context) {
   if (impostors + rays <= 0.0f) return;
   if (rays > 0.0f) draw_pyramid(state, context, target.width, target.height);
   upload_reflectors(state, context, false);
-  draw_lists(state, context, target.width, target.height);
+  draw_lists(state, context, context.parameter("threshold"), shows_everywhere(frame));
+  clear_texture(target);  // tiles without work
 
-  const bool shadows = context.has("shadow_atlas") && impostors > 0.0f;
-  const Program& program = context.program(impostors <= 0.0f ? "rays"
-                                           : rays > 0.0f     ? (shadows ? "both_shadows" : "both")
-                                                             : (shadows ? "impostors_shadows" : "impostors"));
+  const Texture* drawn = &target;
+  if (rays > 0.0f) {
+    if (!fits(state.phases, target.width, target.height))
+      state.phases = make_texture_2d(target.width, target.height, GL_RGBA16F);
+    drawn = &state.phases;
+  }
+  const Program& program = context.program(rays > 0.0f ? "rays" : "impostors");
   program.use();
   bind_gbuffer(context, true);
-  context.bind_texture(light_lists_unit, "light_lists");
   glBindTextureUnit(own_unit, state.lists.id);
-  if (shadows) context.bind_texture(shadow_unit, "shadow_atlas");
   if (rays > 0.0f) glBindTextureUnit(9, state.pyramid.id);
   program.set("impostor_share", impostors);
-  program.set("screen_share", rays);
-  program.set("ray_count", static_cast<int>(context.parameter("rays")));
-  program.set("ray_steps", static_cast<int>(context.parameter("steps")));
-  context.bind_image(0, "reflections", GL_WRITE_ONLY);
-  program.dispatch(target.width, target.height);
+  if (rays > 0.0f) {
+    program.set("screen_share", rays);
+    program.set("ray_count", static_cast<int>(context.parameter("rays")));
+    program.set("ray_steps", static_cast<int>(context.parameter("steps")));
+  }
+  glBindImageTexture(0, drawn->id, 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RGBA16F);
+  dispatch_tiles(state, 0);
+  glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
+  if (rays <= 0.0f) return;
+  const Program& smooth = context.program("smooth");
+  smooth.use();
+  glBindTextureUnit(phases_unit, state.phases.id);
+  glBindImageTexture(0, target.id, 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RGBA16F);
+  dispatch_tiles(state, 0);
 }
 
 PassOffer reflections(State state) {
   const std::vector<std::string> main{"systems/reflection/reflections.comp.glsl"};
-  return {
-      "reflections",
-      "what wet and glossy surfaces mirror of lamps, lit panels, posts and the picture itself, half size",
-      {{"depth", SlotAccess::read},
-       {"albedo", SlotAccess::read},
-       {"normal", SlotAccess::read},
-       {"emissive", SlotAccess::read},
-       {"light_lists", SlotAccess::read},
-       {"shadow_atlas", SlotAccess::read, true},
-       {"highlights", SlotAccess::read, true},  // connected: pass shade leaves lamps to this one where it draws them
-       {"colour", SlotAccess::read},
-       {"reflections", SlotAccess::write}},
-      // threshold: of a white pixel; what adds less in a tile is left out. rays, steps: of screen_space. The rest are
-      // the published rung's: height of the plane that mirrors, how far a reflection is drawn out a metre of distance,
-      // how much its colour is saturated, steps of the vertical blur.
-      {{"threshold", 0.004},
-       {"rays", 4},
-       {"steps", 24},
-       {"ground_m", 0.0},
-       {"stretch", 0.12},
-       {"saturation", 1.5},
-       {"blur_steps", 4}},
-      {{"seen", {{"systems/reflection/reflectors_seen.comp.glsl"}, {}}},
-       {"lists", {{"systems/reflection/reflection_lists.comp.glsl"}, {}}},
-       {"pyramid_first", {{"systems/reflection/picture_pyramid.comp.glsl"}, {"FIRST"}}},
-       {"pyramid", {{"systems/reflection/picture_pyramid.comp.glsl"}, {}}},
-       {"impostor", {{"systems/reflection/impostor.vert.glsl", "systems/reflection/impostor.frag.glsl"}, {}}},
-       {"blur", {{"systems/reflection/streak_blur.comp.glsl"}, {}}},
-       {"rays", {main, {"SCREEN_SPACE"}}},
-       {"impostors", {main, {"IMPOSTORS"}}},
-       {"impostors_shadows", {main, {"IMPOSTORS", "SHADOWS"}}},
-       {"both", {main, {"IMPOSTORS", "SCREEN_SPACE"}}},
-       {"both_shadows", {main, {"IMPOSTORS", "SCREEN_SPACE", "SHADOWS"}}}},
-      wanted,
-      [state](PassContext& context) { draw_reflections(*state, context); }};
+  return {"reflections",
+          "what wet and glossy surfaces mirror of lamps, lit panels, posts and the picture itself, half size",
+          {{"depth", SlotAccess::read},
+           {"albedo", SlotAccess::read},
+           {"normal", SlotAccess::read},
+           {"emissive", SlotAccess::read},
+           {"highlights", SlotAccess::read, true},  // connected: pass shade leaves to this one what it draws
+           {"colour", SlotAccess::read},
+           {"reflections", SlotAccess::write}},
+          // threshold: of a white pixel; what adds less in a tile is left out. rays, steps: of screen_space. The rest
+          // are the published rung's: height of the plane that mirrors, how far a reflection is drawn out a metre of
+          // distance, how much its colour is saturated, steps of the vertical blur.
+          {{"threshold", 0.004},
+           {"rays", 1},
+           {"steps", 24},
+           {"ground_m", 0.0},
+           {"stretch", 0.12},
+           {"saturation", 1.5},
+           {"blur_steps", 4}},
+          {{"seen", {{"systems/reflection/reflectors_seen.comp.glsl"}, {}}},
+           {"lists", {{"systems/reflection/reflection_lists.comp.glsl"}, {}}},
+           {"pyramid_first", {{"systems/reflection/picture_pyramid.comp.glsl"}, {"FIRST"}}},
+           {"pyramid", {{"systems/reflection/picture_pyramid.comp.glsl"}, {}}},
+           {"impostor", {{"systems/reflection/impostor.vert.glsl", "systems/reflection/impostor.frag.glsl"}, {}}},
+           {"blur", {{"systems/reflection/streak_blur.comp.glsl"}, {}}},
+           {"rays", {main, {"SCREEN_SPACE"}}},
+           {"smooth", {{"systems/reflection/reflections_smooth.comp.glsl"}, {}}},
+           {"impostors", {main, {}}}},
+          wanted,
+          [state](PassContext& context) { draw_reflections(*state, context); }};
 }
 
 void lay_reflections_over(ReflectionState& state, PassContext& context) {
@@ -216,6 +244,13 @@ void lay_reflections_over(ReflectionState& state, PassContext& context) {
   std::string name = toyshop > 0.0f ? "toyshop" : "rays";
   if (mirrors) name += "_mirrors";
   if (probes) name += "_probes";
+  if (!state.listed) {  // pass reflections had nothing to do
+    const ReflectorsGpu none{};
+    upload(state.reflectors, &none, sizeof none);
+    glBindBufferBase(GL_UNIFORM_BUFFER, REFLECTORS_BINDING, state.reflectors.id);
+    draw_lists(state, context, 1.0, true);
+  }
+  state.listed = false;
   const Program& over = context.program(name);
   over.use();
   bind_gbuffer(context, true);
@@ -242,11 +277,12 @@ void lay_reflections_over(ReflectionState& state, PassContext& context) {
   over.set("distortion", context.parameter("distortion"));
   over.set("published_edges", edges);
   context.bind_image(0, "colour", GL_READ_WRITE);
-  over.dispatch(context.width, context.height);
+  dispatch_tiles(state, 1);
 }
 
 PassOffer reflections_over(State state) {
-  std::unordered_map<std::string, ShaderKey> shaders;
+  std::unordered_map<std::string, ShaderKey> shaders{
+      {"lists", {{"systems/reflection/reflection_lists.comp.glsl"}, {}}}};
   for (const bool toyshop : {false, true})
     for (const bool mirrors : {false, true})
       for (const bool probes : {false, true}) {

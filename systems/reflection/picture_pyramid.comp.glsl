@@ -1,7 +1,7 @@
 #version 450 core
-// The picture at half size and smaller, for rays to look up. Lamp glass and neon shine through their own lights, whose
-// highlights pass shade draws: what is mirrored of them is no brighter than a lit sign.
-#define BRIGHTEST_MIRRORED_CD_M2 120.0
+// The picture at half size and smaller, for rays to look up. What shines by itself is mirrored in closed form
+// (stand_ins.glsl) or, lamps, by their highlights of pass shade: rays meet it as dark as the dimmest of those.
+#define DIMMEST_REFLECTOR_CD_M2 2.0
 #include "systems/frame.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
@@ -20,7 +20,7 @@ void main() {
     vec3 light = texelFetch(source, from, source_level).rgb;
 #ifdef FIRST
     vec3 own = texelFetch(emissive, from, 0).rgb;
-    light = max(light - own, vec3(0.0)) + min(own, vec3(BRIGHTEST_MIRRORED_CD_M2));
+    light = max(light - own, vec3(0.0)) + min(own, vec3(DIMMEST_REFLECTOR_CD_M2));
 #endif
     sum += 0.25 * light;
   }

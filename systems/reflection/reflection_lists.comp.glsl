@@ -1,14 +1,17 @@
 #version 450 core
-// Which panels and posts matter in each tile of the half-size buffer: a bit each, nearest first. One thread a tile, as in
-// light_lists; a bound on the share of the lobe that a rectangle can take anywhere in the tile.
+// Which panels and posts matter in each tile of the half-size buffer: a bit each, nearest first; and the list of tiles
+// that have any work, for the indirect dispatches of the passes after this. One thread a tile, as in light_lists; a bound
+// on the share of the lobe that a rectangle can take anywhere in the tile.
 #define GBUFFER_FIRST_UNIT 0
 #include "systems/reflection/mirror_texel.glsl"
 #include "systems/reflection/stand_ins.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(binding = 0, rgba32ui) uniform writeonly uimage2D lists;
+layout(std430, binding = REFLECTION_TILES_BINDING) buffer Tiles { uint tiles[]; };
 uniform float threshold;  // of a white pixel
 uniform vec3 backdrop;    // cd/m2 of what a post may hide
+uniform uint every_tile;  // 1: rays, mirrors or billboards may show in any tile that mirrors
 
 // Cosine of max(0, angle - spread), from the cosines of both.
 float widened_cosine(float cosine, float spread_cosine) {
@@ -23,12 +26,12 @@ void main() {
   if (any(greaterThanEqual(first, size))) return;
   float near_depth = 0.0, far_depth = 1.0, smoothest = 1.0, count = 0.0;
   vec3 normal_sum = vec3(0.0);
-  for (int i = 0; i < 32; ++i) {  // every other texel of every other row
-    ivec2 texel = min(first + 2 * ivec2(2 * (i & 3) + ((i >> 2) & 1), i >> 2), size - 1);
-    float depth = read_depth(texel);
+  for (int i = 0; i < REFLECTION_TILE * REFLECTION_TILE; ++i) {  // the pixels that the half-size buffer stands for
+    ivec2 texel = min(first + 2 * ivec2(i % REFLECTION_TILE, i / REFLECTION_TILE), size - 1);
     vec4 encoded = texelFetch(gbuffer_normal, texel, 0);
-    bool mirrors = depth > 0.0 && mirror_share(encoded.z) > 0.0;
-    near_depth = mirrors ? max(near_depth, depth) : near_depth;
+    float depth = mirror_share(encoded.z) > 0.0 ? read_depth(texel) : 0.0;
+    bool mirrors = depth > 0.0;
+    near_depth = max(near_depth, depth);
     far_depth = mirrors ? min(far_depth, depth) : far_depth;
     smoothest = mirrors ? min(smoothest, encoded.z) : smoothest;
     normal_sum += mirrors ? unit_from_octahedral(encoded.xy * 2.0 - 1.0) : vec3(0.0);
@@ -77,4 +80,8 @@ void main() {
     if (n_dot_l > 0.0 && bright > threshold) mask[i >> 5] |= 1u << (i & 31u);
   }
   imageStore(lists, tile, mask);
+  if ((mask.x | mask.y | mask.z | mask.w | every_tile) == 0u) return;
+  uint at = atomicAdd(tiles[0], 1u);
+  atomicAdd(tiles[4], 4u);  // of the picture: a tile of 16 x 16 pixels is four work groups
+  tiles[REFLECTION_TILES_HEADER + int(at)] = uint(tile.x) | uint(tile.y) << 16u;
 }

@@ -12,6 +12,11 @@ namespace petrichor {
 #define MAXIMUM_REFLECTORS 128         // bits of a tile's mask
 #define REFLECTION_TILE 8              // texels of the half-size buffer per side of a tile
 
+// Tiles that have work: two indirect dispatches of 4 uints (of the half-size buffer, of the picture), then the tiles, x in
+// the lower 16 bits, y above.
+#define REFLECTION_TILES_BINDING 18
+#define REFLECTION_TILES_HEADER 8
+
 #define REFLECTOR_PANEL 0
 #define REFLECTOR_LANTERN 1
 #define REFLECTOR_POST 2

@@ -4,6 +4,7 @@
 #define GBUFFER_FIRST_UNIT 0
 #include "systems/reflection/mirror_texel.glsl"
 #include "systems/lighting/facing.glsl"
+#include "systems/reflection/reflection_shared.h"
 #include "systems/reflection/streak.h"
 #include "systems/lighting/environment.glsl"
 #ifdef WITH_MIRRORS
@@ -15,6 +16,7 @@ uniform float planar_share;
 #endif
 
 layout(local_size_x = 8, local_size_y = 8) in;
+layout(std430, binding = REFLECTION_TILES_BINDING) readonly buffer Tiles { uint tiles[]; };
 layout(binding = 0, rgba16f) uniform image2D colour;
 layout(binding = 4) uniform sampler2D reflections;
 #ifdef TOYSHOP
@@ -22,7 +24,7 @@ layout(binding = 5) uniform sampler2D streaks;
 uniform float toyshop_share;
 uniform float distortion;     // of the place on screen, of its height, by the normal's tilt
 #endif
-uniform float drawn_share;      // of the rungs that fill `reflections`
+uniform float drawn_share;      // of the rungs that fill `reflections`: pass shade left their panels to them
 uniform float edge_exponent;    // f_o
 uniform float published_edges;  // 1: k_a for all rungs
 
@@ -48,14 +50,16 @@ vec4 reflection_at(ivec2 texel, float depth) {
 
 void lay_over(ivec2 texel, float depth, float mirrors) {
   Surface surface = read_surface(texel);
+  if (drawn_share > 0.0)
+    surface.roughness = filtered_roughness(texel, depth, surface.normal, surface.roughness);
   Facing at = facing_of(surface, relative_position(vec2(texel) + 0.5, depth));
   vec3 reflected = mirrored_share(at, surface.roughness) * mirror_open(at, surface.roughness, surface.occlusion);
-  vec3 environment = environment_radiance(at.mirror, surface.roughness) * frame.sky_zenith.w;
+  // What pass shade put there: without the windows and signs that are drawn as themselves.
+  Surroundings around = environment_around(at.mirror, surface.roughness);
+  vec3 rest = around.matt * frame.sky_zenith.w;
+  vec3 environment = mix(around.all * frame.sky_zenith.w, rest, drawn_share);
   vec4 r = reflection_at(texel, depth);
-  // The captured surroundings show windows and signs where they stand seen from the capture, not from here: those that
-  // are drawn as themselves are taken out of it.
-  vec3 rest = environment_matt(at.mirror, surface.roughness) * frame.sky_zenith.w;
-  vec3 change = r.rgb - r.a * rest + drawn_share * (rest - environment);
+  vec3 change = r.rgb - r.a * rest;
   // Artists' control of edges: f = (1 - n.v)^f_o, k_a = saturate(1 - f^2).
   float k_a = edge_attenuation(at.n_dot_v, edge_exponent);
 #ifdef TOYSHOP
@@ -67,8 +71,8 @@ void lay_over(ivec2 texel, float depth, float mirrors) {
   vec2 moved = vec2(dot(tangent, right) * frame.size.y * frame.size.z, dot(tangent, ahead)) * distortion;
   vec2 uv = (vec2(texel) + 0.5) * frame.size.zw + (surface.normal.y > 0.7 ? moved : vec2(0.0));
   vec4 s = textureLod(streaks, uv, 0.0) * (surface.normal.y > 0.7 ? 1.0 : 0.0);
-  vec3 shown = s.rgb + (1.0 - s.a) * environment;
-  change += toyshop_share * (k_a * shown - environment);
+  vec3 shown = s.rgb + (1.0 - s.a) * around.all * frame.sky_zenith.w;
+  change += toyshop_share * (k_a * shown - around.all * frame.sky_zenith.w);
 #else
   const float toyshop_share = 0.0;
 #endif
@@ -94,7 +98,10 @@ void lay_over(ivec2 texel, float depth, float mirrors) {
 }
 
 void main() {
-  ivec2 texel = ivec2(gl_GlobalInvocationID.xy);
+  uint listed = tiles[uint(REFLECTION_TILES_HEADER) + gl_WorkGroupID.x / 4u];
+  ivec2 quarter = ivec2(gl_WorkGroupID.x & 1u, (gl_WorkGroupID.x >> 1u) & 1u);
+  ivec2 texel = ivec2(listed & 0xffffu, listed >> 16u) * (2 * REFLECTION_TILE) + quarter * 8 +
+                ivec2(gl_LocalInvocationID.xy);
   if (any(greaterThanEqual(texel, ivec2(frame.size.xy)))) return;
   float depth = read_depth(texel);
   float mirrors = depth > 0.0 ? mirror_share(texelFetch(gbuffer_normal, texel, 0).z) : 0.0;

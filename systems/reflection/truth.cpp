@@ -107,7 +107,7 @@ struct Facing {
 glm::vec3 lamps(const Rays& rays, const StageScene& scene, const Surface& at, const Facing& f, std::mt19937& random) {
   std::uniform_real_distribution<float> unit(0.0f, 1.0f);
   glm::vec3 sum(0.0f);
-  constexpr int points = 16;
+  constexpr int points = 4;  // a pixel has sixteen of these
   for (const FrameLight& light : scene.lights) {
     const glm::vec3 to = light.position_m - at.place;
     const glm::vec3 aside = glm::normalize(glm::cross(to, glm::vec3(0, 1, 0.01f))),
@@ -131,11 +131,43 @@ glm::vec3 lamps(const Rays& rays, const StageScene& scene, const Surface& at, co
   return sum;
 }
 
+// What one point mirrors to the eye, that looks along `way`.
+glm::vec3 mirrored(const Rays& rays, const StageScene& scene, const Frame& frame, const Surface& at, glm::vec3 way,
+                   int strata, std::mt19937& random) {
+  Facing f;
+  f.v = -way;
+  f.n = at.normal;
+  f.n_dot_v = glm::clamp(glm::dot(f.n, f.v), 0.02f, 1.0f);
+  f.alpha = std::max(at.material->roughness * at.material->roughness, 2e-3f);
+  f.b = glm::normalize(glm::cross(f.n, f.v));
+  f.t = glm::cross(f.b, f.n);
+  const glm::vec3 v_local(glm::dot(f.v, f.t), 0.0f, f.n_dot_v);
+  glm::vec3 round(0.0f);
+  std::uniform_real_distribution<float> unit(0.0f, 1.0f);
+  for (int i = 0; i < strata; ++i)
+    for (int j = 0; j < strata; ++j) {
+      // GGX's slopes: P(m < r) = r^2 / (a^2 + r^2).
+      const float u = (static_cast<float>(i) + unit(random)) / static_cast<float>(strata);
+      const float turn = 6.2831853f * (static_cast<float>(j) + unit(random)) / static_cast<float>(strata);
+      const float r = f.alpha * std::sqrt(u / std::max(1.0f - u, 1e-6f));
+      const glm::vec2 slope(r * std::cos(turn), r * std::sin(turn));
+      const glm::vec2 weight = shading::facet_weight(slope, v_local, f.alpha * f.alpha);
+      const glm::vec3 h = glm::normalize(f.n + f.t * slope.x + f.b * slope.y), l = glm::reflect(way, h);
+      if (glm::dot(l, f.n) <= 0.0f || weight.x <= 0.0f) continue;
+      const float fresnel = shading::fresnel(glm::vec3(shading::DIELECTRIC_F0), weight.y, 1.0f).x;
+      Surface met;
+      const bool hit = rays.meet(at.place + f.n * 1e-3f, l, met);
+      round += (hit ? rays.matt(met) : sky_of(frame.sky, l)) * (weight.x * fresnel);
+    }
+  return lamps(rays, scene, at, f, random) + round / static_cast<float>(strata * strata);
+}
+
 }  // namespace
 
 std::vector<glm::vec4> reflection_truth(const StageScene& scene, const Frame& frame, int samples, std::uint32_t seed) {
   const Rays rays(scene);
-  const int strata = std::max(static_cast<int>(std::sqrt(static_cast<double>(samples))), 1);
+  constexpr int parts = 4;  // of a pixel's side
+  const int strata = std::max(static_cast<int>(std::sqrt(static_cast<double>(samples) / (parts * parts)) + 0.5), 1);
   std::vector<glm::vec4> picture(static_cast<std::size_t>(frame.width) * static_cast<std::size_t>(frame.height));
   const float tall = std::tan(0.5f * frame.camera.vertical_fov_rad);
   const float wide = tall * static_cast<float>(frame.width) / static_cast<float>(frame.height);
@@ -144,38 +176,27 @@ std::vector<glm::vec4> reflection_truth(const StageScene& scene, const Frame& fr
     for (int x = 0; x < frame.width; ++x) {
       std::mt19937 random(seed * 7919u + static_cast<unsigned>(y * frame.width + x));
       std::uniform_real_distribution<float> unit(0.0f, 1.0f);
-      const glm::vec3 way = glm::normalize(
-          frame.camera.orientation *
-          glm::vec3((2.0f * (static_cast<float>(x) + 0.5f) / static_cast<float>(frame.width) - 1.0f) * wide,
-                    (2.0f * (static_cast<float>(y) + 0.5f) / static_cast<float>(frame.height) - 1.0f) * tall, -1.0f));
+      const auto meet = [&](float u, float v, glm::vec3& way, Surface& at) {
+        way = glm::normalize(
+            frame.camera.orientation *
+            glm::vec3((2.0f * (static_cast<float>(x) + u) / static_cast<float>(frame.width) - 1.0f) * wide,
+                      (2.0f * (static_cast<float>(y) + v) / static_cast<float>(frame.height) - 1.0f) * tall, -1.0f));
+        return rays.meet(eye, way, at) && shading::mirror_share(at.material->roughness) > 0.0f;
+      };
+      glm::vec3 way;
       Surface at;
-      if (!rays.meet(eye, way, at) || shading::mirror_share(at.material->roughness) <= 0.0f) continue;
-      Facing f;
-      f.v = -way;
-      f.n = at.normal;
-      f.n_dot_v = glm::clamp(glm::dot(f.n, f.v), 0.02f, 1.0f);
-      f.alpha = std::max(at.material->roughness * at.material->roughness, 2e-3f);
-      f.b = glm::normalize(glm::cross(f.n, f.v));
-      f.t = glm::cross(f.b, f.n);
-      const glm::vec3 v_local(glm::dot(f.v, f.t), 0.0f, f.n_dot_v);
-      glm::vec3 sum = lamps(rays, scene, at, f, random), round(0.0f);
-      for (int i = 0; i < strata; ++i)
-        for (int j = 0; j < strata; ++j) {
-          // GGX's slopes: P(m < r) = r^2 / (a^2 + r^2).
-          const float u = (static_cast<float>(i) + unit(random)) / static_cast<float>(strata);
-          const float turn = 6.2831853f * (static_cast<float>(j) + unit(random)) / static_cast<float>(strata);
-          const float r = f.alpha * std::sqrt(u / std::max(1.0f - u, 1e-6f));
-          const glm::vec2 slope(r * std::cos(turn), r * std::sin(turn));
-          const glm::vec2 weight = shading::facet_weight(slope, v_local, f.alpha * f.alpha);
-          const glm::vec3 h = glm::normalize(f.n + f.t * slope.x + f.b * slope.y), l = glm::reflect(way, h);
-          if (glm::dot(l, f.n) <= 0.0f || weight.x <= 0.0f) continue;
-          const float fresnel = shading::fresnel(glm::vec3(shading::DIELECTRIC_F0), weight.y, 1.0f).x;
-          Surface met;
-          const bool hit = rays.meet(at.place + f.n * 1e-3f, l, met);
-          round += (hit ? rays.matt(met) : sky_of(frame.sky, l)) * (weight.x * fresnel);
-        }
-      sum += round / static_cast<float>(strata * strata);
-      picture[static_cast<std::size_t>(y * frame.width + x)] = glm::vec4(sum, 1.0f);
+      if (!meet(0.5f, 0.5f, way, at)) continue;
+      glm::vec3 pixel(0.0f);
+      float met_ground = 0.0f;
+      for (int part = 0; part < parts * parts; ++part) {
+        if (!meet((static_cast<float>(part % parts) + unit(random)) / parts,
+                  (static_cast<float>(part / parts) + unit(random)) / parts, way, at))
+          continue;
+        pixel += mirrored(rays, scene, frame, at, way, strata, random);
+        met_ground += 1.0f;
+      }
+      if (met_ground > 0.0f)
+        picture[static_cast<std::size_t>(y * frame.width + x)] = glm::vec4(pixel / met_ground, 1.0f);
     }
   return picture;
 }

@@ -11,7 +11,8 @@
 namespace petrichor {
 
 // Radiance, cd/m2, rows from the bottom, of pixels on surfaces that mirror (roughness below 0.6); alpha 1 there, 0
-// elsewhere. samples: facets a pixel, stratified. Lamps are spheres, evaluated directly at 16 points of their discs.
+// elsewhere; the mean over the pixel. samples: facets a pixel, stratified. Lamps are spheres, evaluated directly at 64
+// points of their discs.
 // Walls and posts are Lambert's, in the light of the lamps alone.
 std::vector<glm::vec4> reflection_truth(const StageScene&, const Frame&, int samples, std::uint32_t seed = 1);
 
