@@ -19,6 +19,7 @@ using glm::clamp, glm::dot, glm::exp2, glm::inversesqrt, glm::length, glm::max, 
 
 const float PI = 3.14159265358979f;
 const float DIELECTRIC_F0 = 0.04f;  // n = 1.5: paint, stone, plastic
+const float FILM_F0 = 0.0200f;      // n = 1.33: water on them
 
 // Density of microfacets along the half vector, 1/sr. a2 = alpha^2, alpha = perceptual roughness squared.
 SHADING_FN float ggx_distribution(float n_dot_h, float a2) {

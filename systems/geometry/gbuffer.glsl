@@ -1,7 +1,8 @@
 // The thin G-buffer: 20 bytes a pixel, written by pass "gbuffer", read by everything that lights.
 //   depth     depth32f        reversed z; 0 is the sky
 //   albedo    rgba8           rgb: square root of linear base colour (2 bits more in the darks), a: metallic
-//   normal    rgba16 (unorm)  rg: octahedral world normal, b: perceptual roughness, a: ambient occlusion
+//   normal    rgba16 (unorm)  rg: octahedral world normal, b: perceptual roughness, a: ambient occlusion in its upper
+//                             11 bits, share under water in its lower 5: whoever reads it whole is off by 1/2048
 //   emissive  r11f_g11f_b10f  cd/m2
 //   water_mask  rg8  optional: hollow that may hold water (0..1), kind of material (n / 255)
 #ifndef SYSTEMS_GEOMETRY_GBUFFER_GLSL
@@ -19,6 +20,7 @@ struct Surface {
   vec3 normal;      // world, unit, towards the viewer
   float roughness;  // perceptual: GGX alpha is its square
   float occlusion;  // 1: open
+  float water;      // 0 to 1: share whose first interface is water, which mirrors half as much as stone
   vec3 emissive;    // cd/m2
 };
 
@@ -39,7 +41,10 @@ vec3 unit_from_octahedral(vec2 p) {
 }
 
 vec4 encode_albedo(Surface s) { return vec4(sqrt(clamp(s.albedo, 0.0, 1.0)), s.metallic); }
-vec4 encode_normal(Surface s) { return vec4(octahedral_from_unit(s.normal) * 0.5 + 0.5, s.roughness, s.occlusion); }
+vec4 encode_normal(Surface s) {
+  float upper = floor(clamp(s.occlusion, 0.0, 1.0) * 2047.0 + 0.5), lower = floor(clamp(s.water, 0.0, 1.0) * 31.0 + 0.5);
+  return vec4(octahedral_from_unit(s.normal) * 0.5 + 0.5, s.roughness, (upper * 32.0 + lower) / 65535.0);
+}
 
 Surface decode_surface(vec4 albedo, vec4 normal, vec3 emissive) {
   Surface s;
@@ -47,7 +52,9 @@ Surface decode_surface(vec4 albedo, vec4 normal, vec3 emissive) {
   s.metallic = albedo.a;
   s.normal = unit_from_octahedral(normal.xy * 2.0 - 1.0);
   s.roughness = normal.z;
-  s.occlusion = normal.w;
+  float bits = floor(normal.w * 65535.0 + 0.5), upper = floor(bits * (1.0 / 32.0));
+  s.occlusion = upper * (1.0 / 2047.0);
+  s.water = (bits - upper * 32.0) * (1.0 / 31.0);
   s.emissive = emissive;
   return s;
 }

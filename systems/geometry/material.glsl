@@ -107,6 +107,7 @@ Surface material_surface(vec4 colour, out vec2 water_mask) {
   if (material.choices.x < 0.5) open = texture(occlusion_texture, placed_uv(MATERIAL_OCCLUSION)).r;
 #endif
   s.occlusion = 1.0 + material.surface.w * (open - 1.0);
+  s.water = 0.0;
   s.emissive = material.emissive_cutoff.rgb;
 #if MATERIAL_HAS(8)
   s.emissive *= texture(emissive_texture, placed_uv(MATERIAL_EMISSIVE)).rgb;

@@ -52,7 +52,7 @@ Facing facing_of(Surface surface, vec3 place) {
   at.alpha = max(surface.roughness * surface.roughness, 2e-3);
   at.a2 = at.alpha * at.alpha;
   at.smith_view = sqrt(at.n_dot_v * at.n_dot_v * (1.0 - at.a2) + at.a2);
-  at.f0 = mix(vec3(DIELECTRIC_F0), surface.albedo, surface.metallic);
+  at.f0 = mix(vec3(mix(DIELECTRIC_F0, FILM_F0, surface.water)), surface.albedo, surface.metallic);
   at.dielectric = 1.0 - surface.metallic;
   return at;
 }

@@ -81,6 +81,7 @@ Surface under_water(Surface s, StandingWater water, vec3 view, vec2 slope, float
   s.roughness = mix(s.roughness, roughness, water.influence);
   s.metallic *= 1.0 - water.influence;
   s.occlusion = mix(s.occlusion, 1.0, water.influence);
+  s.water = max(s.water, clamp(water.depth_m / puddle_edge_m, 0.0, 1.0));
   return s;
 }
 

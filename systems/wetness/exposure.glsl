@@ -6,17 +6,17 @@
 #include "systems/occlusion/occlusion.glsl"
 
 // Share of the four texels about a place on a map that do not shelter it, weighted by how near they are. p: texels, and
-// metres along the fall. Their bias is twice a texel's own, because they reach twice as far. Texels, not a gather: that
-// costs software OpenGL ten times as much.
-float open_on_map(uint map, vec3 p, vec3 size) {
-  vec2 low = floor(p.xy);
-  ivec3 at = ivec3(ivec2(low), int(map));
-  vec4 depth = vec4(texelFetch(occlusion_depth, at, 0).r, texelFetch(occlusion_depth, at + ivec3(1, 0, 0), 0).r,
-                    texelFetch(occlusion_depth, at + ivec3(0, 1, 0), 0).r,
-                    texelFetch(occlusion_depth, at + ivec3(1, 1, 0), 0).r);
+// metres along the fall; apart: texels from one to the next. Their bias is twice a texel's own, because they reach twice
+// as far. Texels, not a gather: that costs software OpenGL ten times as much.
+float open_on_map(uint map, vec3 p, vec3 size, int apart) {
+  vec2 low = floor(p.xy / float(apart));
+  ivec3 at = ivec3(ivec2(low) * apart, int(map));
+  vec4 depth = vec4(texelFetch(occlusion_depth, at, 0).r, texelFetch(occlusion_depth, at + ivec3(apart, 0, 0), 0).r,
+                    texelFetch(occlusion_depth, at + ivec3(0, apart, 0), 0).r,
+                    texelFetch(occlusion_depth, at + ivec3(apart, apart, 0), 0).r);
   vec4 above = vec4(p.z) - (vec4(1.0) - depth) * size.y;  // m that a texel's surface stands above the place
-  vec4 open = vec4(lessThanEqual(above, vec4(2.0 * size.z)));
-  vec2 f = p.xy - low;
+  vec4 open = vec4(lessThanEqual(above, vec4(2.0 * size.z * float(apart))));
+  vec2 f = p.xy / float(apart) - low;
   return mix(mix(open.x, open.y, f.x), mix(open.z, open.w, f.x), f.y);
 }
 
@@ -27,13 +27,19 @@ vec3 on_map(uint map, vec3 place) {
   return vec3(clamp(p.xy, vec2(0.002), vec2(0.998)) * texels - 0.5, p.z);
 }
 
-float open_about(uint map, vec3 place) { return open_on_map(map, on_map(map, place), occlusion.size_depth[map].xyz); }
+float open_about(uint map, vec3 place) { 
+  return open_on_map(map, on_map(map, place), occlusion.size_depth[map].xyz, 1);
+}
 
 // Metres that the map's surface stands above a place along the fall; 0 or less: it is in the open.
 float covered_m(uint map, vec3 place) {
   float hit = occlusion_first_hit_m(map, place);
   return hit < -2.0 * occlusion.size_depth[map].z ? -hit : 0.0;
 }
+
+// Gusts blow across the mean wind as well: turbulence near the ground is about 0.75 as strong that way, but of the spread
+// most is drops of different sizes, which are blown along it alone. Together a guess.
+const float lateral_share = 0.4;
 
 // By one map, as occlusion.glsl's deposit() does. spread: deviation of the tilts, level and along the wind.
 float exposure_by(uint map, vec3 place, vec3 normal, vec3 spread) {
@@ -46,21 +52,32 @@ float exposure_by(uint map, vec3 place, vec3 normal, vec3 spread) {
   if (occlusion.fall_texel[map].w <= 0.0) return caught;
   vec3 off = occlusion_off_surface(map, place, normal);
   // Is there anything about that could shelter it: here, and to where the spread reaches from a roof 4 m above?
-  vec3 reach = spread * 7.0;
-  float here = covered_m(map, off), before = covered_m(map, off - reach), behind = covered_m(map, off + reach);
-  float most = max(here, max(before, behind));
-  float least = min(here, min(before, behind));
-  float open = open_about(map, off);  // edges along the wind are as soft as a texel
+  vec3 across_wind = vec3(-spread.z, 0.0, spread.x) * lateral_share, reach = spread * 7.0;
+  float here = covered_m(map, off);
+  vec4 about = vec4(covered_m(map, off - reach - 7.0 * across_wind), covered_m(map, off - reach + 7.0 * across_wind),
+                    covered_m(map, off + reach - 7.0 * across_wind), covered_m(map, off + reach + 7.0 * across_wind));
+  float most = max(here, max(max(about.x, about.y), max(about.z, about.w)));
+  float least = min(here, min(min(about.x, about.y), min(about.z, about.w)));
+  float open = here > 0.0 ? 0.0 : 1.0;
   bool mixed = caught > 0.0 && most > 0.0 && least <= 0.0;
   // A loop for an if: software OpenGL leaves a loop that no pixel is in, but walks through both sides of a branch.
   for (int once = 0; once < (mixed ? 1 : 0); ++once) {
-    vec3 width = spread * min(here > 0.0 ? here : most, 12.0);
+    float fallen = min(here > 0.0 ? here : most, 12.0);
     open = 0.0;
-    // A Gaussian by seven points, each as wide as a texel.
-    const float weights[4] = float[4](0.2707, 0.2166, 0.1109, 0.0372);
-    vec3 middle = on_map(map, off), step_p = (on_map(map, off + width) - middle) * 0.667;
+    // A Gaussian by five points, each a tent about as wide as the steps between them, a power of two of texels so that it
+    // stands still in the world. Walls lie along the fall, where far texels would be their own shelter: one tent, a texel
+    // wide.
+    const float weights[3] = float[3](0.3664, 0.2443, 0.0725);
+    bool wall = normal.y < 0.7;
+    vec3 middle = on_map(map, off), step_p = (on_map(map, off + spread * fallen) - middle) * 0.9;
+    vec3 side_p = on_map(map, off + across_wind * fallen) - middle;
+    float texels = length(step_p.xy);
+    int apart = wall || texels < 1.5 ? 1 : texels < 3.0 ? 2 : 4;
     vec3 size = occlusion.size_depth[map].xyz;
-    for (int k = -3; k <= 3; ++k) open += weights[abs(k)] * open_on_map(map, middle + step_p * float(k), size);
+    for (int k = wall ? 0 : -2; k <= (wall ? 0 : 2); ++k) {
+      vec3 at = wall ? middle : middle + step_p * float(k) + side_p * ((k & 1) == 0 ? 0.5 : -0.5);
+      open += (wall ? 1.0 : weights[abs(k)]) * open_on_map(map, at, size, apart);
+    }
   }
   return caught * open;
 }

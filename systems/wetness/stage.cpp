@@ -46,13 +46,14 @@ Result<void> WetStage::load(std::vector<PassOffer> all, int layers) {
       {"albedo", {{"format", "rgba8"}}},
       {"normal", {{"format", "rgba16"}}},
       {"emissive", {{"format", "r11f_g11f_b10f"}}},
+      {"water_mask", {{"format", "rg8"}}},
       {"water", {{"format", "rg16f"}}},
       {"picture", {{"format", "rgba8"}}},
       {"map", {{"format", "depth32f"}, {"width", 1024}, {"height", 1024}, {"layers", layers}, {"persistent", true}}}};
   const nlohmann::json over{{"depth", "depth"}, {"albedo", "albedo"}, {"normal", "normal"}};
   nlohmann::json gbuffer = over, wet = over, kept = over;
-  gbuffer.update({{"pass", "gbuffer"}, {"emissive", "emissive"}});
-  wet.update({{"pass", "wet_surfaces"}, {"occlusion_map", "map"}, {"water", "water"}});
+  gbuffer.update({{"pass", "gbuffer"}, {"emissive", "emissive"}, {"water_mask", "water_mask"}});
+  wet.update({{"pass", "wet_surfaces"}, {"water_mask", "water_mask"}, {"occlusion_map", "map"}, {"water", "water"}});
   kept.update({{"pass", "keep"}, {"water", "water"}, {"picture", "picture"}});
   table["passes"] = {gbuffer, {{"pass", "occlusion_map"}, {"occlusion_map", "map"}}, wet, kept};
   table["output"] = "picture";

@@ -77,14 +77,25 @@ Wet wet_of(vec4 row, float slope) {
 }
 #endif
 
+#if LEVEL >= 1
+// Of a film's own surface, ruffled by the drops that hit it (alpha^2 grows by twice the variance of slopes).
+float film_roughness_of(float film_m) {
+  float ruffled = film_slope_rms(wetness.open_film.w, film_m);
+  return sqrt(sqrt(1.6e-5 + 2.0 * ruffled * ruffled));
+}
+#endif
+
 #if LEVEL >= 2
+const float far_m = 60.0;
+
 // What four pixels share, or those of them that lie in one plane.
 struct Place {
   vec3 at;  // m relative to the camera
   vec3 plane;
   bool planar;
   float exposed;
-  vec4 film;  // of the table
+  float slope;  // sine of its inclination
+  float film_m, soaked, wetted, film_roughness;
 };
 
 Place place_at(ivec2 texel, vec2 pixel, float depth, vec2 depth_slope, bool planar) {
@@ -99,11 +110,21 @@ Place place_at(ivec2 texel, vec2 pixel, float depth, vec2 depth_slope, bool plan
 #ifdef MASK
   porosity = porosity_of(wet_materials[wet_kind(texelFetch(mask_texture, texel, 0).rg)], stored.z);
 #endif
-  p.exposed = exposure(p.at, p.plane, wetness.spread.xyz);
+  // Far away no edge of a shelter is told from another.
+  p.exposed = max(p.plane.y, 0.0);
   float before = 0.0;
-  for (int once = 0; once < (wetness.spread.w > 1.0 ? 1 : 0); ++once)
+  bool near = dot(p.at, p.at) < far_m * far_m;
+  for (int once = 0; once < (near ? 1 : 0); ++once) p.exposed = exposure(p.at, p.plane, wetness.spread.xyz);
+  for (int once = 0; once < (near && wetness.spread.w > 1.0 ? 1 : 0); ++once)
     before = remembered_exposure(p.at, p.plane, wetness.spread.xyz);
-  p.film = film_of(porosity, p.exposed, before);
+  p.slope = sqrt(max(1.0 - p.plane.y * p.plane.y, 0.0));
+  Wet w = wet_of(film_of(porosity, p.exposed, before), p.slope);
+  // The rung of one film everywhere gives way to this one.
+  float elsewhere = wetness.shares.x / max(dot(wetness.shares.xyz, vec3(1.0)), 1e-6);
+  p.film_m = mix(w.film_m, wetness.open_film.x * 1e-3, elsewhere);
+  p.soaked = mix(w.soaked, wetness.open_film.y, elsewhere);
+  p.wetted = wetted_share(p.film_m);
+  p.film_roughness = film_roughness_of(p.film_m * max(p.plane.y, 0.0));
   return p;
 }
 #define OF_PLACE Place shared_place
@@ -138,13 +159,8 @@ vec2 wet_pixel(ivec2 texel, float depth, OF_PLACE) {
   Wet w = Wet(wetness.open_film.x * 1e-3, wetness.open_film.y);
 #elif LEVEL >= 2
   vec3 plane = shared_place.planar ? shared_place.plane : s.normal;
-  float e = shared_place.exposed;
-  float slope = sqrt(max(1.0 - plane.y * plane.y, 0.0));
-  Wet w = wet_of(shared_place.film, slope);
-  // The rung of one film everywhere gives way to this one.
-  float elsewhere = wetness.shares.x / max(dot(wetness.shares.xyz, vec3(1.0)), 1e-6);
-  w.film_m = mix(w.film_m, wetness.open_film.x * 1e-3, elsewhere);
-  w.soaked = mix(w.soaked, wetness.open_film.y, elsewhere);
+  float e = shared_place.exposed, slope = shared_place.slope;
+  Wet w = Wet(shared_place.film_m, shared_place.soaked);
 #endif
 #if LEVEL >= 1
   float strength = clamp(dot(wetness.shares.xyz, vec3(1.0)), 0.0, 1.0);
@@ -175,14 +191,21 @@ vec2 wet_pixel(ivec2 texel, float depth, OF_PLACE) {
 #ifdef STANDING
   if (standing.depth_m > 0.0) w = Wet(max(w.film_m, standing.depth_m), 1.0);
 #endif
+#if LEVEL == 2 && !defined(STANDING)
+  float wetted = shared_place.wetted * takes * strength;
+#else
   float wetted = wetted_share(w.film_m) * takes * strength;
+#endif
   float soaked = w.soaked * takes * strength;
   float drowned = drowned_share(w.film_m, relief_m(roughness)) * takes * strength;
   s.albedo = wet_base_colour(s.albedo, porosity, soaked, wetted);
-  // Pits smaller than the film fill up everywhere; where it drowns the relief its own surface is seen, ruffled by
-  // the drops that hit it (alpha^2 grows by twice the variance of slopes).
-  float ruffled = film_slope_rms(wetness.open_film.w, w.film_m * max(plane.y, 0.0));
-  float film_roughness = sqrt(sqrt(1.6e-5 + 2.0 * ruffled * ruffled));
+  s.water = wetted;
+  // Pits smaller than the film fill up everywhere; where it drowns the relief its own surface is seen.
+#if LEVEL == 1
+  float film_roughness = film_roughness_of(w.film_m * max(plane.y, 0.0));
+#else
+  float film_roughness = shared_place.film_roughness;
+#endif
   s.roughness = mix(roughness * (1.0 - 0.25 * wetted), min(film_roughness, roughness), drowned);
   // What a normal map shows is coarser than roughness: bumps of a millimetre, which the film follows until they drown.
   float flattened = drowned_share(w.film_m, relief_m(roughness) + MAPPED_RELIEF_M) * takes * strength;
