@@ -74,7 +74,8 @@ float smooth(float low, float high, float x) {
 }
 
 // The rim's waves, which the jets grow from.
-float rim_wave(bool film, float turn) {
+float rim_wave(bool film, int take, float turn) {
+  turn += 1.9f * static_cast<float>(take);
   const float jets = film ? jets_of_film : jets_of_corona;
   return 0.25f * std::sin(turn * jets) + 0.45f * std::sin(turn * 5.0f + 1.3f) + 0.5f * std::sin(turn * 2.0f + 0.4f) +
          0.35f * std::sin(turn * 9.0f + 2.6f);
@@ -85,11 +86,11 @@ float rim_wave(bool film, float turn) {
 CrownShape crown_shape(bool film, float phase) {
   const float grows = std::sqrt(std::clamp(phase / 0.35f, 0.0f, 1.0f));
   const float up = phase < 0.4f ? std::sin(0.25f * tau * phase / 0.4f) : std::cos(0.25f * tau * (phase - 0.4f) / 0.6f);
-  return {grows * (1.0f + 0.1f * std::max(phase - 0.35f, 0.0f)) / 1.065f, (film ? 0.55f : 0.16f) * std::max(up, 0.0f),
+  return {grows * (1.0f + 0.1f * std::max(phase - 0.35f, 0.0f)) / 1.065f, (film ? 0.55f : 0.18f) * std::max(up, 0.0f),
           1.0f - smooth(0.5f, 0.85f, phase)};
 }
 
-std::vector<float> crown_picture(bool film, float elevation_deg, float phase) {
+std::vector<float> crown_picture(bool film, float elevation_deg, float phase, int take) {
   const float elevation = elevation_deg * tau / 360.0f;
   Canvas canvas{std::sin(elevation), std::cos(elevation)};
   const CrownShape now = crown_shape(film, phase);
@@ -99,7 +100,7 @@ std::vector<float> crown_picture(bool film, float elevation_deg, float phase) {
   for (int a = 0; a < around; ++a) {
     const float turn = tau * (a + 0.5f) / around;
     const glm::vec3 out(std::cos(turn), 0.0f, std::sin(turn));
-    const float wave = rim_wave(film, turn);
+    const float wave = rim_wave(film, take, turn);
     const float high = now.height * (1.0f + 0.16f * wave);
     const float ring = now.radius * (1.0f + 0.03f * std::sin(turn * 3.0f));
     for (int k = 0; k < upwards; ++k) {
@@ -108,30 +109,31 @@ std::vector<float> crown_picture(bool film, float elevation_deg, float phase) {
       const glm::vec3 normal = glm::normalize(out - glm::vec3(0, 2.0f * lean * s, 0));
       const float area = tau / around * ring * high / upwards;
       // Clear water: it bends light where it is not flat, below at its foot and above where it gathers to the rim.
-      const float bends = 0.16f + 0.35f * std::pow(1.0f - s, 6.0f) + 0.25f * s * s * s + 0.1f * std::max(wave, 0.0f);
-      canvas.piece(place, normal, area, now.sheet * bends);
+      const float bends = 0.07f + 0.3f * std::pow(1.0f - s, 6.0f) + 0.22f * s * s * s + 0.08f * std::max(wave, 0.0f);
+      canvas.piece(place, normal, area, now.sheet * bends * (film ? 1.0f : 0.5f));
     }
-    // Its foot, a raised ring on the surface, flattens.
-    canvas.ball(out * ring * (1.0f + 0.01f * wave) + glm::vec3(0, 0.01f, 0),
-                0.018f * (1.0f - 0.8f * phase) * (film ? 1.0f : 0.7f));
+    // Its foot, a raised ring on the surface, flattens; on a film it runs on as the first wave.
+    const float runs = film ? 0.4f * std::max(phase - 0.4f, 0.0f) : 0.0f;
+    canvas.ball(out * (ring + runs) * (1.0f + 0.01f * wave) + glm::vec3(0, 0.01f, 0),
+                0.018f * (1.0f - 0.8f * phase) * (film ? 1.0f : 0.4f));
     // The rim tears where the sheet does.
-    const float rim = 0.022f * (0.75f + 0.25f * wave) * std::sqrt(now.sheet);
+    const float rim = (film ? 0.022f : 0.014f) * (0.75f + 0.25f * wave) * std::sqrt(now.sheet);
     if (rim > 0.004f) canvas.ball(out * (ring + lean * high) + glm::vec3(0, high, 0), rim);
   }
   // Jets, and their drops, which go on on their own after they have left.
   const int jets = film ? jets_of_film : jets_of_corona;
   for (int j = 0; j < jets; ++j) {
-    const std::uint32_t key = std::uint32_t(j) + (film ? 0u : 100u);
+    const std::uint32_t key = std::uint32_t(j) + (film ? 0u : 100u) + 1000u * std::uint32_t(take);
     const float turn = tau * (j + 0.25f + 1.3f * (rand_of(key, 1) - 0.5f)) / jets;
     const glm::vec3 out(std::cos(turn), 0.0f, std::sin(turn));
     const float chance = rand_of(key, 2), strength = 0.3f + 1.25f * chance * chance;
-    const float high = now.height * (1.0f + 0.16f * rim_wave(film, turn));
+    const float high = now.height * (1.0f + 0.16f * rim_wave(film, take, turn));
     const glm::vec3 foot = out * (now.radius + lean * high) + glm::vec3(0, high, 0);
     const glm::vec3 way =
         glm::normalize(out * ((film ? 0.35f : 0.7f) + 0.5f * rand_of(key, 11)) + glm::vec3(0, film ? 0.85f : 0.7f, 0) +
                        0.3f * (rand_of(key, 12) - 0.5f) * glm::vec3(-out.z, 0, out.x));
     const float length =
-        (film ? 0.26f : 0.22f) * strength * smooth(0.04f, 0.3f, phase) * (1.0f - smooth(0.55f, 0.85f, phase));
+        (film ? 0.26f : 0.3f) * strength * smooth(0.04f, 0.3f, phase) * (1.0f - smooth(0.55f, 0.85f, phase));
     constexpr int beads = 9;
     for (int b = 0; b < beads && length > 0.01f; ++b) {
       const float s = (b + 0.5f) / beads;
@@ -173,7 +175,7 @@ std::vector<std::uint16_t> bake_crowns() {
       for (int p = 0; p < CROWN_PHASES; ++p) {
         for (int s = 0; s < samples; ++s) {
           const float phase = (p + (s + 0.5f) / samples) / CROWN_PHASES;
-          const std::vector<float> picture = crown_picture(kind == 0, view, phase);
+          const std::vector<float> picture = crown_picture(kind < CROWN_TAKES, view, phase, kind % CROWN_TAKES);
           for (std::size_t i = 0; i < texels; ++i) sum[i] += picture[i] / (samples * CROWN_PHASES);
         }
         for (std::size_t i = 0; i < texels; ++i)

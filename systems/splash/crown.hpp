@@ -21,7 +21,8 @@ CrownShape crown_shape(bool film, float phase);
 
 // One picture, CROWN_SIDE squared texels from the bottom up, rgba each: opacity a, a times the drop's Fresnel term
 // (0.95 (1 - n.v)^4 + 0.05), a (1 + n_x)/2, a (1 + n_y)/2; n the unit normal of what is seen, in the picture's axes.
-std::vector<float> crown_picture(bool film, float elevation_deg, float phase);
+// take: which of several rims and jets.
+std::vector<float> crown_picture(bool film, float elevation_deg, float phase, int take = 0);
 
 // All of them: CROWN_KINDS x CROWN_VIEWS x CROWN_PHASES layers of 16-bit rgba. Layer p of a sequence is the mean over
 // its life with the phases after (p + 1) / CROWN_PHASES left out, so a difference of two is the sum over an exposure,

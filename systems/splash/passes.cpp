@@ -15,9 +15,9 @@ namespace petrichor {
 namespace {
 
 struct SplashGpuState {
-  Buffer layers, cells, command, list, landings, read_back;
+  Buffer layers, tiles, cells, candidates, command, list, landings, read_back;
   Texture crown;
-  std::uint32_t capacity = 0, cell_capacity = 0, columns = 0;
+  std::uint32_t capacity = 0, cell_capacity = 0, candidate_capacity = 0, columns = 0;
   bool software = false, device_known = false, listed = false;
   std::shared_ptr<RainOptics> optics;
   std::shared_ptr<RainSums> sums;
@@ -27,7 +27,9 @@ struct SplashGpuState {
 std::weak_ptr<SplashGpuState> newest;
 
 // Columns count up to some six times what is there: so many of those wanted may be listed before they are thinned.
-constexpr std::uint32_t listed_for_each = 5;
+std::uint32_t listed_for_each(const SplashGpuState& gpu) {
+  return gpu.software ? 3u : 5u;
+}
 
 void bind(GLuint binding, const Buffer& buffer) {
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, binding, buffer.id);
@@ -79,6 +81,7 @@ void prepare(const SplashGpuState& gpu, PassContext& context, const Program& pro
   program.set("published", int(s.published));
   program.set("capacity", unsigned(gpu.capacity));
   program.set("cell_capacity", unsigned(gpu.cell_capacity));
+  program.set("candidate_capacity", unsigned(gpu.candidate_capacity));
   program.set("least_radiance", context.parameter("least_radiance"));
 }
 
@@ -104,15 +107,32 @@ void list_field(SplashGpuState& gpu, PassContext& context, const Limits& limits)
     gpu.cells = make_buffer(std::size_t(gpu.cell_capacity + gpu.cell_capacity / 4) * sizeof(SplashCellGpu));
   bind(RAIN_LAYERS_BINDING, gpu.layers);
   bind(SPLASH_CELLS_BINDING, gpu.cells);
+  gpu.candidate_capacity = 4u * gpu.capacity;  // some six for each that is listed
+  if (gpu.candidates.bytes < gpu.candidate_capacity * sizeof(glm::uvec2))
+    gpu.candidates = make_buffer(gpu.candidate_capacity * sizeof(glm::uvec2));
+  bind(SPLASH_CANDIDATES_BINDING, gpu.candidates);
+  // Tiles stand still in the world, so that which lamps count does not flicker.
+  const int tiles = gpu.software ? 16 : SPLASH_TILES;
+  const double side = 2.0 * std::max(limits.reach_m, 0.1f) / (tiles - 2);
+  const auto first = [&](double eye) { return static_cast<float>((std::floor(eye / side) - tiles / 2) * side - eye); };
+  const glm::vec3 tiling(first(frame.camera.position_m.x), first(frame.camera.position_m.z), static_cast<float>(side));
+  if (gpu.tiles.bytes == 0) gpu.tiles = make_buffer(SPLASH_TILES * SPLASH_TILES * sizeof(SplashTileGpu));
+  bind(SPLASH_TILES_BINDING, gpu.tiles);
+  const Program& light = context.program(shader_of(gpu, "tiles"));
+  prepare(gpu, context, light, limits);
+  light.set("tiling", tiling);
+  light.dispatch(tiles * tiles);
+  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
   const Program& find = context.program(shader_of(gpu, "columns"));
   prepare(gpu, context, find, limits);
   find.set("layer_count", static_cast<unsigned>(columns.layers.size()));
+  find.set("tiling", tiling);
   find.set("candidates", static_cast<unsigned>(columns.candidates));
   dispatch_wide(columns.candidates);
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
   const Program& threshold = context.program("threshold");
   threshold.use();
-  threshold.set("most", static_cast<float>(listed_for_each) * static_cast<float>(limits.most));
+  threshold.set("most", static_cast<float>(listed_for_each(gpu)) * static_cast<float>(limits.most));
   threshold.set("of_listed", 0);
   glDispatchCompute(1, 1, 1);
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT);
@@ -121,6 +141,11 @@ void list_field(SplashGpuState& gpu, PassContext& context, const Limits& limits)
   drops.set("layer_count", static_cast<unsigned>(columns.layers.size()));
   glBindBuffer(GL_DISPATCH_INDIRECT_BUFFER, gpu.command.id);
   glDispatchComputeIndirect(offsetof(SplashCommandGpu, cell_groups));
+  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT);
+  const Program& impacts = context.program(shader_of(gpu, "impacts"));
+  prepare(gpu, context, impacts, limits);
+  impacts.set("layer_count", static_cast<unsigned>(columns.layers.size()));
+  glDispatchComputeIndirect(offsetof(SplashCommandGpu, candidate_groups));
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
   threshold.use();
   threshold.set("most", static_cast<float>(limits.most));
@@ -197,10 +222,11 @@ void list_splashes(SplashGpuState& gpu, PassContext& context) {
   gpu.listed = true;
   const Limits limits = limits_of(gpu, context);
   // Twice what is listed on average at most, and more: it is never full, or who came first would count.
-  gpu.capacity = std::min(2u * listed_for_each * static_cast<std::uint32_t>(std::max(limits.most, 0)), 800000u) + 8192u;
+  const auto most = static_cast<std::uint32_t>(std::max(limits.most, 0));
+  gpu.capacity = std::min(2u * listed_for_each(gpu) * most, 800000u) + 8192u;
   if (gpu.list.bytes < gpu.capacity * sizeof(SplashGpu)) gpu.list = make_buffer(gpu.capacity * sizeof(SplashGpu));
   SplashCommandGpu start{};
-  start.cell_groups = start.draw_groups = {SPLASH_ROW, 0u, 1u, 0u};
+  start.cell_groups = start.candidate_groups = start.draw_groups = {SPLASH_ROW, 0u, 1u, 0u};
   upload(gpu.command, &start, sizeof start);
   bind_rain_optics(*gpu.optics, frame);
   bind(SPLASH_COMMAND_BINDING, gpu.command);
@@ -281,12 +307,12 @@ std::vector<PassOffer> splash_passes(const DropPainting& painting) {
                 {"normal", SlotAccess::read, true},   {"water", SlotAccess::read, true},
                 {"overhead", SlotAccess::read, true}, {"environment", SlotAccess::read, true}};
   list.parameters = {{"least_radiance", 0.004},
-                     {"software_most", 2000},
+                     {"software_most", 1000},
                      {"software_reach", 8},
                      {"software_secondary_reach", 1.5},
                      {"software_least_mm", 1.1}};
   const std::string folder = "systems/splash/";
-  for (const char* name : {"columns", "drops", "random", "landings"})
+  for (const char* name : {"tiles", "columns", "drops", "impacts", "random", "landings"})
     add_shader(list, name, folder + "splash_" + name + ".comp.glsl", {});
   list.shaders["threshold"] = {{folder + "splash_threshold.comp.glsl"}, {}};
   list.wanted = wanted;

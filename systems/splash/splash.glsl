@@ -19,6 +19,7 @@ uniform vec4 reach;           // m: of splashes, of their droplets; share of fie
 uniform vec4 look;            // size, its variation, opacity, its variation
 uniform vec3 lights_look;     // backlight; lightning bias l_b; ambient, output units
 uniform bool published;
+uniform vec3 tiling;  // of tiles of ground: the first corner, relative, m; their side, m
 
 struct Impact {
   vec3 place, normal;
@@ -57,11 +58,13 @@ bool meet_surface(vec3 velocity, inout Impact i) {
     normal = unit_of_octahedral(texel_of_normal.xy * 2.0 - 1.0);
     roughness = texel_of_normal.z;
   }
-  float off = dot(i.place - surface, normal);
-  // Something else stands before it, or behind.
-  if (abs(off) > 0.12 + 0.01 * clip.w) return depth < frame.camera_world_m.w / clip.w * 1.05 + 1e-6;
-  float towards = dot(velocity, normal);
-  if (towards > -0.05 * length(velocity)) return true;
+  float off = dot(i.place - surface, normal), towards = dot(velocity, normal), fall = length(velocity);
+  // Something else stands before it, or behind; a surface seen from below hides what lands on it.
+  if (abs(off) > 0.12 + 0.01 * clip.w)
+    return i.place.y < 0.0 && depth < frame.camera_world_m.w / clip.w * 1.05 + 1e-6;
+  // The side that is seen is not the one that was struck: through thin cloth nothing shows.
+  if (towards > 0.05 * fall || (i.place.y > 0.0 && dot(normal, surface) > 0.0)) return false;
+  if (towards > -0.05 * fall) return i.place.y < 0.0;
   float later = -off / towards;
   i.place += velocity * later;
   i.age -= later;
@@ -95,6 +98,8 @@ float importance_of(float diameter, float speed, float distance_to_eye, float br
   float radius = crown_radius(diameter, speed, 0.2 * diameter, 1.0) * frame.lens.z / max(distance_to_eye, 0.2);
   return radius * radius * max(brightness, 1e-4);
 }
+// What droplets that have outlived their crown weigh beside it: their area against the crown's.
+const float DROPLETS_WEIGH = 0.04;
 // Of two that weigh the same one may be kept and the other not: by a number of its own, so that which ones does not
 // depend on who comes first.
 float odds_of(float importance) { return min(1.0, importance / max(command.threshold.x, 1e-30)); }
@@ -113,6 +118,47 @@ vec3 overhead_at(vec3 place) {
   vec3 lux = textureLod(overhead_light, uv, 0.0).rgb;
   float most = max(max(lux.r, lux.g), max(lux.b, 1e-9));
   return lux * (max(most - overhead_place.w, 0.0) / most * 0.0795775);
+}
+
+// How bright a splash at a place may be, for its importance. Square root: the picture's eye is not linear, and no lamp
+// should take all splashes to itself.
+float brightness_at(vec3 place, uvec4 indices, int count) {
+  float away = max(length(place), 0.1);
+  vec3 sum = vec3(0.0);
+  for (int i = 0; i < count; ++i) {
+    uint pair = indices[i >> 1];
+    sum += lamp_light(lights[(i & 1) == 0 ? pair & 0xffffu : pair >> 16u], place, away);
+  }
+  return sqrt(max(max(sum.r, sum.g), sum.b) * frame.lens.w + lights_look.z);
+}
+
+// A drop of a listed cell that may have a splash.
+struct SplashChance {
+  vec3 closed;
+  uint bits;
+  float importance, odds, chance;  // of its crown
+};
+bool may_splash_here(SplashCellGpu cell, RainLayerGpu layer, uint m, out SplashChance c) {
+  uint own;
+  vec4 in_cell = drop_of_cell(cell.key.xyz, m, own);
+  c.closed = cell.corner_edge.xyz + cell.corner_edge.w * in_cell.xyz;
+  vec3 velocity = layer.velocity_diameter.xyz;
+  float oldest = cell.slab.w;
+  if (c.closed.y > cell.slab.x || c.closed.y < cell.slab.y + velocity.y * oldest) return false;
+  // About where it landed, to thin out before the map is asked.
+  float guess = clamp((c.closed.y - cell.slab.y) / velocity.y, 0.0, oldest);
+  vec3 landed = c.closed - velocity * guess;
+  float away = length(landed);
+  if (away > mix(0.85, 1.0, in_cell.w) * layer.expected.z) return false;
+  // Well out of the picture, however high the ground is within the cell's slab.
+  vec4 clip = frame.view_projection * vec4(landed, 1.0);
+  float slack = 0.1 * abs(clip.w) + 2.0 * (0.2 + cell.slab.x - cell.slab.y);
+  if (clip.w < -slack || abs(clip.x) > clip.w + slack * 2.0) return false;
+  c.bits = random_bits(uvec4(own, m, cell.key.x, cell.key.y));
+  c.importance = cell.slab.z / max(away * away, 0.04);
+  c.odds = odds_of(c.importance);
+  c.chance = unit_float(c.bits);
+  return c.chance < c.odds * reach.z;
 }
 
 #ifdef LISTS

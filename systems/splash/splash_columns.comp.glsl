@@ -5,11 +5,19 @@ layout(local_size_x = 64) in;
 #include "systems/splash/splash.glsl"
 #include "systems/drops/cell_lights.glsl"
 
+layout(std430, binding = SPLASH_TILES_BINDING) readonly buffer SplashTiles { SplashTileGpu tiles[]; };
 layout(std430, binding = SPLASH_CELLS_BINDING) writeonly buffer SplashCells { SplashCellGpu cells[]; };
 uniform uint candidates, cell_capacity;
 
 const int most_levels = 128;
-const float sample_m = 0.4;  // between questions to the map; a rail thinner than this may go without
+// Metres between questions to the map; a rail thinner than this may go without.
+#ifdef SOFTWARE
+const float sample_m = 0.7;
+const int most_samples = 3;
+#else
+const float sample_m = 0.4;
+const int most_samples = 6;
+#endif
 
 bool touches(vec3 centre, vec3 extent) {
   mat4 rows = transpose(frame.view_projection);
@@ -42,8 +50,8 @@ void main() {
   // Rounding makes a leaning column half a cell wider to each side.
   vec2 pad = 0.5 * edge * min(abs(slope) * 1e6, vec2(1.0));
   vec2 low = corner - pad, high = corner + edge + pad;
-  int across = clamp(int(ceil((high.x - low.x) / sample_m)), 1, 6);
-  int along = clamp(int(ceil((high.y - low.y) / sample_m)), 1, 6);
+  int across = clamp(int(ceil((high.x - low.x) / sample_m)), 1, most_samples);
+  int along = clamp(int(ceil((high.y - low.y) / sample_m)), 1, most_samples);
   // All that it may ever hold: outside the view?
   vec2 leans = slope * (top - base);
   vec2 whole_low = low + min(leans, 0.0), whole_high = high + max(leans, 0.0);
@@ -59,7 +67,7 @@ void main() {
   bool droplets_here = reach.w > 0.0 && diameter > 1e-3;
   float near_life = max(life, SECONDARY_LIFE + frame.camera_velocity_mps.w);
 
-  uvec4 mask = uvec4(0u);
+  uint mask[4] = uint[](0u, 0u, 0u, 0u);  // an array: a vector written by a variable index hung an NVIDIA GPU
   float highest = -1e30, lowest = 1e30, nearest = 1e30, deepest_life = 0.0;
   for (int s = 0; s < across * along; ++s) {
     vec2 q = low + (vec2(s % across, s / across) + 0.5) * (high - low) / vec2(across, along);
@@ -86,14 +94,25 @@ void main() {
   }
   if (nearest > 1e29) return;
 
-  bool lit = false, any_cell = false;
-  int light_count = 0;
-  uvec4 pairs = uvec4(0u);
-  float brightness = 0.0;
+  // Lamps: the tile's, where the ground is about as high as the tile's was.
+  vec3 middle = vec3(corner.x + 0.5 * edge, 0.5 * (highest + lowest), corner.y + 0.5 * edge);
+  middle.xz += slope * (middle.y - base);
+  ivec2 t = ivec2(floor((middle.xz - tiling.xy) / tiling.z));
+  SplashTileGpu tile;
+  tile.light.z = -1e9;
+  if (all(greaterThanEqual(t, ivec2(0))) && all(lessThan(t, ivec2(SPLASH_TILES)))) tile = tiles[t.y * SPLASH_TILES + t.x];
+  uvec4 pairs = tile.lights;
+  int light_count = int(tile.light.x);
+  float brightness = tile.light.y;
+  if (abs(tile.light.z - middle.y) > 1.0) {
+    light_count = lights_of_cell(middle, 0.71 * edge + 0.02, pairs);
+    brightness = brightness_at(middle, pairs, light_count);
+  }
+  float at_a_metre = importance_of(diameter, speed, 1.0, brightness);
+  bool any_cell = false;
   for (int word = 0; word < 4; ++word) {
-    while (mask[word] != 0u) {
-      int bit = findLSB(mask[word]);
-      mask[word] &= mask[word] - 1u;
+    for (uint bits = mask[word]; bits != 0u; bits &= bits - 1u) {
+      int bit = findLSB(bits);
       int level = 32 * word + bit;
       ivec2 moved = column + lean(layer, level);
       ivec3 cell = ivec3(moved.x, level, moved.y);
@@ -108,22 +127,6 @@ void main() {
       if (dot(closest, closest) > reached * reached) continue;
       uvec3 key;
       uint count = drops_of_cell(layer, uvec3(cell), key);
-      if (!lit) {
-        lit = true;
-        vec3 middle = vec3(corner + 0.5 * edge + slope * (0.5 * (highest + lowest) - base), 0.0).xzy;
-        middle.y = 0.5 * (highest + lowest);
-        light_count = lights_of_cell(middle, 0.71 * edge + 0.02, pairs);
-        float away = max(length(middle), 0.1);
-        vec3 sum = vec3(0.0);
-        for (int i = 0; i < RAIN_CELL_LIGHTS; ++i) {
-          if (i >= light_count) break;
-          uint pair = pairs[i >> 1];
-          sum += lamp_light(lights[(i & 1) == 0 ? pair & 0xffffu : pair >> 16u], middle, away);
-        }
-        brightness = max(max(sum.r, sum.g), sum.b) * frame.lens.w + lights_look.z;
-        // Square root: the picture's eye is not linear, and no lamp should take all splashes to itself.
-        brightness = sqrt(brightness);
-      }
       any_cell = true;
       if (count == 0u) continue;
       uint slot = atomicAdd(command.cell_groups.w, 1u);
@@ -133,14 +136,19 @@ void main() {
       cells[slot].corner_edge = vec4(at, edge);
       cells[slot].key = uvec4(key, count << 16u | uint(light_count) << 12u | l);
       cells[slot].lights = pairs;
-      cells[slot].slab = vec4(highest + 0.15, lowest - 0.15, brightness, deepest_life);
+      cells[slot].slab = vec4(highest + 0.15, lowest - 0.15, at_a_metre, deepest_life);
     }
   }
   if (!any_cell) return;
   // All that lands in the column's own width while a splash lives; parts outside the view count too.
-  float alive = layer.expected.w * edge * edge * speed * deepest_life;
-  float importance = importance_of(diameter, speed, max(nearest, 0.3), brightness);
+  float crowns = min(deepest_life, life);
+  float per_s = 256.0 * layer.expected.w * edge * edge * speed;
+  float importance = at_a_metre / max(nearest * nearest, 0.09);
   int bin = bin_of(importance);
-  uint units = uint(256.0 * alive + 0.5);
+  uint units = uint(per_s * crowns + 0.5);
+  if (units > 0u) atomicAdd(command.expected[bin >> 2][bin & 3], units);
+  // Droplets that outlive them.
+  bin = bin_of(DROPLETS_WEIGH * importance);
+  units = uint(per_s * (deepest_life - crowns) + 0.5);
   if (units > 0u) atomicAdd(command.expected[bin >> 2][bin & 3], units);
 }

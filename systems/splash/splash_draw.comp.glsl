@@ -34,11 +34,15 @@ float view_of(float sine, float chance) {
 }
 
 // A splash that stands for several covers as much as they would, up to half a pixel, and beyond is so much brighter.
-// Sets drop_light; returns the optical depth of this opacity.
+// Sets drop_light; returns the optical depth of this opacity. Light that it bends from lamps is added whole; of what it
+// hides only a part is another thing than the ground about it, which is what water so near the ground mostly shows.
+const float hides = 0.35;
 float weighed_depth(SplashGpu s, float opacity) {
   float covers = min(opacity * s.light_weight.w, max(opacity, 0.5));
-  drop_light = min(s.light_weight.rgb * (opacity * s.light_weight.w / max(covers, 1e-9)), vec3(RAIN_RADIANCE_MOST));
-  return depth_of(min(covers, 0.98));
+  covers = min(covers, 0.98);
+  float depth = depth_of(hides * covers);
+  drop_light = min(s.light_weight.rgb * (opacity * s.light_weight.w / max(depth, 1e-9)), vec3(RAIN_RADIANCE_MOST));
+  return depth;
 }
 
 void draw_crown(SplashGpu s, float exposure) {
@@ -51,17 +55,23 @@ void draw_crown(SplashGpu s, float exposure) {
   vec4 tip = frame.view_projection * vec4(place + 0.1 * away * s.axis_age.xyz, 1.0);
   vec2 up = (tip.xy / max(tip.w, 1e-3) * 0.5 + 0.5) * frame.size.xy - centre;
   up = dot(up, up) > 1e-6 ? normalize(up) : vec2(0.0, 1.0);
+  // No two alike: each leans a little, and is of its own height.
+  vec4 own = random_float4(uvec4(s.bits.x, 0x1eafu, 3u, 9u));
+  float lean = 0.22 * (own.x + own.y - 1.0), tall = mix(0.65, 1.3, own.z);
+  vec2 unleant = up;
+  up = cos(lean) * up + sin(lean) * vec2(-unleant.y, unleant.x);
   float half_side = CROWN_REACH * radius * frame.lens.z * away / (clip.w * clip.w);
+  if (!(half_side < 4096.0)) return;  // nor where it is no number: that would be the whole picture
   float life = s.drop.z, age = s.axis_age.w;
   float shown = max(exposure, life / 32.0);  // of no exposure: an instant
   float last = min(age / life, 1.0), first = max((age - shown) / life, 0.0);
   if (last <= first) return;
   float per_window = life / shown;
   float view = view_of(-dot(place, s.axis_age.xyz) / away, unit_float(s.bits.x * 0x9e3779b9u));
-  float kind = (s.bits.y & SPLASH_FILM) != 0u ? 0.0 : 1.0;
+  float kind = float(CROWN_TAKES) * ((s.bits.y & SPLASH_FILM) != 0u ? 0.0 : 1.0) + floor(own.w * float(CROWN_TAKES));
   float first_layer = (kind * float(CROWN_VIEWS) + view) * float(CROWN_PHASES);
   float mirrored = (s.bits.x & 1u) != 0u ? -1.0 : 1.0;
-  float lod = max(log2(float(CROWN_SIDE) / max(2.0 * half_side, 1e-3)), 0.0);
+  float lod = max(log2(float(CROWN_SIDE) / max(2.0 * half_side, 1e-3)), 0.0) + 0.5;  // soft, as water is
   // Before the ground that it stands on.
   float depth = frame.camera_world_m.w / max(clip.w - 1.6 * radius - 0.002 * clip.w, frame.camera_world_m.w);
   float kept = clear_share * (distance_fade > 0.0 ? clamp(away * distance_fade, 0.0, 1.0) : 1.0);
@@ -76,13 +86,15 @@ void draw_crown(SplashGpu s, float exposure) {
     return;
   }
   // The picture is turned by `up`: pixels of its bounding box.
-  float bound = half_side * (abs(up.x) + abs(up.y));
+  float bound = half_side * (abs(up.x) + abs(up.y));  // taller ones lose the highest drops of their jets
   ivec2 low = ivec2(max(floor(centre - bound), 0.0)), high = ivec2(min(ceil(centre + bound), frame.size.xy - 1.0));
   for (int y = low.y + lane; y <= high.y; y += lanes) {
     seed_dither(y);
     for (int x = low.x; x <= high.x; ++x) {
       vec2 d = (vec2(x, y) + 0.5 - centre) / half_side;
+      // Seen from above only the ring is left of it, which is round whatever its height.
       vec2 uv = vec2(dot(d, vec2(up.y, -up.x)) * mirrored, dot(d, up));
+      uv.y /= uv.y > 0.0 ? mix(tall, 1.0, view / float(CROWN_VIEWS - 1)) : 1.0;
       if (any(greaterThan(abs(uv), vec2(1.0)))) continue;
       uv = uv * 0.5 + 0.5;
       vec4 sum = crown_until(uv, first_layer, last, lod);

@@ -1,49 +1,12 @@
 #version 450 core
-// Goes through the drops of the listed cells and lists those whose splash is alive.
+// Goes through the drops of the listed cells for those that may have a splash, by cheap tests alone: what is asked of
+// maps and lamps comes after, of the few that are left and side by side.
 layout(local_size_x = 64) in;
-#define LISTS
 #include "systems/splash/splash.glsl"
 
 layout(std430, binding = SPLASH_CELLS_BINDING) readonly buffer SplashCells { SplashCellGpu cells[]; };
-uniform uint cell_capacity;
-
-void consider(SplashCellGpu cell, RainLayerGpu layer, uint m) {
-  uint bits;
-  vec4 in_cell = drop_of_cell(cell.key.xyz, m, bits);
-  vec3 closed = cell.corner_edge.xyz + cell.corner_edge.w * in_cell.xyz;
-  vec3 velocity = layer.velocity_diameter.xyz;
-  float diameter = layer.velocity_diameter.w, oldest = cell.slab.w;
-  if (closed.y > cell.slab.x || closed.y < cell.slab.y + velocity.y * oldest) return;
-  // About where it landed, to thin out before the map is asked.
-  float guess = clamp((closed.y - cell.slab.y) / velocity.y, 0.0, oldest);
-  float away = length(closed - velocity * guess);
-  float own = layer.expected.z;
-  if (away > mix(0.85, 1.0, in_cell.w) * own) return;
-  uint chance = random_bits(uvec4(bits, m, cell.key.x, cell.key.y));
-  float importance = importance_of(diameter, -velocity.y, away, cell.slab.z);
-  float odds = odds_of(importance);
-  if (unit_float(chance) >= odds * reach.z) return;
-  Impact i;
-  if (!find_impact(closed, velocity, oldest, i)) return;
-  // While the rung with droplets comes or goes, that share of the splashes has them.
-  bool droplets = splash_random(chance, 3u) * reach.z < reach.w;
-  SplashGpu s;
-  if (!begin_splash(i, velocity, diameter, chance, droplets, 1.0 / odds, s)) return;
-  vec3 at = above(i);
-  float distance_to_eye = length(at);
-  vec3 sum = vec3(0.0);
-  int lights_here = int(cell.key.w >> 12u & 15u);
-  for (int k = 0; k < RAIN_CELL_LIGHTS; ++k) {
-    if (k >= lights_here) break;
-    uint pair = cell.lights[k >> 1];
-    sum += lamp_light(lights[(k & 1) == 0 ? pair & 0xffffu : pair >> 16u], at, distance_to_eye);
-  }
-  light_splash(s, sum);
-  s.drop.w = importance / odds;
-  int bin = bin_of(s.drop.w);
-  atomicAdd(command.expected[bin >> 2][bin & 3], 256u);
-  list_splash(s);
-}
+layout(std430, binding = SPLASH_CANDIDATES_BINDING) writeonly buffer SplashCandidates { uvec2 candidates[]; };
+uniform uint cell_capacity, candidate_capacity;
 
 void main() {
   uint group = gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x;
@@ -52,6 +15,13 @@ void main() {
   SplashCellGpu cell = cells[index];
   RainLayerGpu layer = layers[cell.key.w & 0xfffu];
   uint count = cell.key.w >> 16u;
-  for (uint m = gl_LocalInvocationIndex % uint(SPLASH_CELL_LANES); m < count; m += uint(SPLASH_CELL_LANES))
-    consider(cell, layer, m);
+  for (uint m = gl_LocalInvocationIndex % uint(SPLASH_CELL_LANES); m < count; m += uint(SPLASH_CELL_LANES)) {
+    SplashChance chance;
+    if (!may_splash_here(cell, layer, m, chance)) continue;
+    uint slot = atomicAdd(command.candidate_groups.w, 1u);
+    if (slot >= candidate_capacity) continue;
+    const uint per_row = uint(SPLASH_ROW * SPLASH_GROUP);
+    if (slot % per_row == 0u) atomicMax(command.candidate_groups.y, slot / per_row + 1u);
+    candidates[slot] = uvec2(index, m);
+  }
 }

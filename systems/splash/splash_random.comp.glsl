@@ -56,12 +56,13 @@ void main() {
     if (lights[n].cone_shadow.w == 0.0) continue;
     vec3 light = lamp_light(lights[n], from, distance_to_eye);
     if (published) {
-      // Brightened where the light is behind the splash; otherwise it only mirrors some.
+      // Brightened where the light is behind the splash; otherwise it only mirrors some. Over all directions that is
+      // as much light as falls on it: 1 / (4 pi).
       bool directional = lights[n].direction_kind.w == float(LIGHT_DIRECTIONAL);
       vec3 direction = directional ? lights[n].direction_kind.xyz : normalize(from - lights[n].position_range.xyz);
       float cosine = -dot(direction, from) / distance_to_eye;
       light /= max(drop_phase(cosine), 1e-6);
-      light *= cosine > 0.0 ? 0.6 * cosine : 0.02;
+      light *= cosine > 0.0 ? 0.3 * cosine : 0.01;
     }
     sum += light;
   }

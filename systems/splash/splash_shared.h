@@ -15,14 +15,18 @@ using glm::vec4;
 #define SPLASH_COMMAND_BINDING 4
 #define SPLASH_LIST_BINDING 8
 #define SPLASH_LANDINGS_BINDING 9
+#define SPLASH_TILES_BINDING 10
+#define SPLASH_CANDIDATES_BINDING 11
 
 #define SPLASH_GROUP 64
 #ifdef SOFTWARE
 #define SPLASH_CELL_LANES 1   // invocations that share a cell
 #define SPLASH_DRAW_LANES 8   // and a splash
+#define SPLASH_TILES 16       // a side, of the square of ground that splashes reach over
 #else
 #define SPLASH_CELL_LANES 16
 #define SPLASH_DRAW_LANES 16
+#define SPLASH_TILES 40
 #endif
 #define SPLASH_ROW 128        // work groups along x of the indirect dispatches
 #define SPLASH_BINS 64        // of importance, half a power of two each
@@ -32,7 +36,8 @@ using glm::vec4;
 #define CROWN_SIDE 64     // texels
 #define CROWN_PHASES 16
 #define CROWN_VIEWS 4     // elevations of the eye above the surface
-#define CROWN_KINDS 2     // on a film; a low corona
+#define CROWN_TAKES 2     // of each kind
+#define CROWN_KINDS (2 * CROWN_TAKES)  // on a film; a low corona
 #define CROWN_REACH 1.5   // half a side of the picture, in greatest radii of the crown
 
 #define SPLASH_CROWN 1u     // the crown is there while the shutter is open
@@ -44,7 +49,14 @@ struct SplashCellGpu {
   vec4 corner_edge;
   uvec4 key;      // of its drops; w: count << 16 | number of lights << 12 | layer
   uvec4 lights;   // up to 8 indices of 16 bits
-  vec4 slab;      // y of the highest and the lowest surface under the sky, m relative; brightness; age of the oldest, s
+  vec4 slab;      // y of the highest and the lowest surface under the sky, m relative; importance at a metre from the
+                  // eye; age of the oldest, s
+};
+
+// A tile of ground: what lights the splashes on it.
+struct SplashTileGpu {
+  uvec4 lights;  // as a cell's
+  vec4 light;    // x: how many; y: brightness, as a cell's; z: height of the ground that was asked for, relative, m
 };
 
 // A splash that is drawn.
@@ -65,7 +77,8 @@ struct SplashLandingGpu {
 
 // Indirect commands and counts.
 struct SplashCommandGpu {
-  uvec4 cell_groups;  // of splash_drops; w: cells
+  uvec4 cell_groups;       // of splash_drops; w: cells
+  uvec4 candidate_groups;  // of splash_impacts; w: candidates
   uvec4 draw_groups;  // of splash_draw; w: splashes
   vec4 threshold;     // importance below which they are thinned: x of those listed, y of those drawn; z: drawn, on
                       // average; w: alive by what the columns say, more than there are
@@ -76,7 +89,8 @@ struct SplashCommandGpu {
 static_assert(sizeof(SplashCellGpu) == 64);
 static_assert(sizeof(SplashGpu) == 80);
 static_assert(sizeof(SplashLandingGpu) == 48);
-static_assert(sizeof(SplashCommandGpu) == 48 + SPLASH_BINS * 4);
+static_assert(sizeof(SplashTileGpu) == 32);
+static_assert(sizeof(SplashCommandGpu) == 64 + SPLASH_BINS * 4);
 }  // namespace petrichor
 #endif
 #endif
