@@ -69,7 +69,7 @@ local passes = {
     mirrors = "mirrors", parameters = { software_share = 2 } },
   -- What wet ground mirrors, in place of the captured surroundings; by rays through the picture, or by stand-ins.
   { pass = "reflections", depth = "depth", albedo = "albedo", normal = "normal", emissive = "emissive",
-    highlights = "lamp_highlights", colour = "colour", reflections = "reflections" },
+    highlights = "lamp_highlights", environment = "environment", colour = "colour", reflections = "reflections" },
   { pass = "reflections_over", colour = "colour", depth = "depth", albedo = "albedo", normal = "normal",
     emissive = "emissive", environment = "environment", mirrors = "mirrors", probes = "probes",
     reflections = "reflections" },

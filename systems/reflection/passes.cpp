@@ -5,6 +5,7 @@
 
 #include "engine/gpu/objects.hpp"
 #include "systems/frame.hpp"
+#include "systems/mirror_frame.hpp"
 #include "systems/reflection/choose.hpp"
 #include "systems/reflection/reflection.hpp"
 
@@ -44,6 +45,22 @@ void bind_gbuffer(PassContext& context, bool emissive) {
   context.bind_texture(1, "albedo");
   context.bind_texture(2, "normal");
   if (emissive) context.bind_texture(3, "emissive");
+}
+
+// Software OpenGL pays for each variant of a shader as for each lookup: what there is none of is black.
+const Texture& black(ReflectionState& state) {
+  if (state.black.id == 0) {
+    state.black = make_texture_2d(1, 1, GL_RGBA16F);
+    clear_texture(state.black);
+  }
+  return state.black;
+}
+
+void bind_environment(ReflectionState& state, PassContext& context) {
+  if (context.has("environment"))
+    context.bind_texture(environment_unit, "environment");
+  else
+    glBindTextureUnit(environment_unit, black(state).id);
 }
 
 // The chosen reflectors, and of each how much the picture shows.
@@ -139,6 +156,14 @@ void draw_lists(ReflectionState& state, PassContext& context, double threshold, 
   bind_gbuffer(context, false);
   lists.set("threshold", static_cast<float>(threshold));
   lists.set("every_tile", every_tile ? 1u : 0u);
+  int probes = 0;
+  if (context.frame.mirrors)
+    for (const FrameMirrors::Probe& probe : context.frame.mirrors->probes) {
+      if (probes == 4) break;
+      const glm::vec3 place(probe.place_m - context.frame.camera.position_m);
+      lists.set("probe_spheres[" + std::to_string(probes++) + "]", glm::vec4(place, probe.radius_m));
+    }
+  lists.set("probe_count", probes);
   lists.set("backdrop", glm::max(context.frame.sky.horizon_cd_m2, glm::vec3(0.3f)));
   glBindImageTexture(0, state.lists.id, 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RGBA32UI);
   lists.dispatch(across, down);
@@ -156,7 +181,7 @@ void dispatch_tiles(const ReflectionState& state, std::size_t command) {
 
 // Whether something but reflectors may show in any tile that mirrors.
 bool shows_everywhere(const Frame& frame) {
-  return rays_share(frame) > 0.0f || share(frame, ReflectionRung::toyshop) > 0.0f || frame.mirrors;
+  return rays_share(frame) > 0.0f || share(frame, ReflectionRung::toyshop) > 0.0f;
 }
 
 void draw_reflections(ReflectionState& state, PassContext& context) {
@@ -181,6 +206,7 @@ void draw_reflections(ReflectionState& state, PassContext& context) {
   bind_gbuffer(context, true);
   glBindTextureUnit(own_unit, state.lists.id);
   if (rays > 0.0f) glBindTextureUnit(9, state.pyramid.id);
+  bind_environment(state, context);
   program.set("impostor_share", impostors);
   if (rays > 0.0f) {
     program.set("screen_share", rays);
@@ -208,6 +234,7 @@ PassOffer reflections(State state) {
            {"emissive", SlotAccess::read},
            {"highlights", SlotAccess::read, true},  // connected: pass shade leaves to this one what it draws
            {"colour", SlotAccess::read},
+           {"environment", SlotAccess::read, true},
            {"reflections", SlotAccess::write}},
           // threshold: of a white pixel; what adds less in a tile is left out. rays, steps: of screen_space. The rest
           // are the published rung's: height of the plane that mirrors, how far a reflection is drawn out a metre of
@@ -254,19 +281,14 @@ void lay_reflections_over(ReflectionState& state, PassContext& context) {
   const Program& over = context.program(name);
   over.use();
   bind_gbuffer(context, true);
-  // Software OpenGL pays for each variant of a shader as for each lookup: what there is none of is black.
-  if (state.black.id == 0) {
-    state.black = make_texture_2d(1, 1, GL_RGBA16F);
-    clear_texture(state.black);
-  }
   const auto bind = [&](int unit, bool there, std::string_view slot) {
     if (there)
       context.bind_texture(unit, slot);
     else
-      glBindTextureUnit(static_cast<GLuint>(unit), state.black.id);
+      glBindTextureUnit(static_cast<GLuint>(unit), black(state).id);
   };
   bind(4, rays, "reflections");
-  bind(environment_unit, context.has("environment"), "environment");
+  bind_environment(state, context);
   if (toyshop > 0.0f) glBindTextureUnit(own_unit, state.streaks[0].id);
   if (mirrors) context.bind_texture(mirrors_unit, "mirrors");
   if (probes) context.bind_texture(probes_unit, "probes");

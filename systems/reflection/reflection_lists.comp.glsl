@@ -12,6 +12,8 @@ layout(std430, binding = REFLECTION_TILES_BINDING) buffer Tiles { uint tiles[]; 
 uniform float threshold;  // of a white pixel
 uniform vec3 backdrop;    // cd/m2 of what a post may hide
 uniform uint every_tile;  // 1: rays, mirrors or billboards may show in any tile that mirrors
+uniform vec4 probe_spheres[4];  // m relative to the camera, w the radius: moving things that mirror their own probes
+uniform int probe_count;
 
 // Cosine of max(0, angle - spread), from the cosines of both.
 float widened_cosine(float cosine, float spread_cosine) {
@@ -80,7 +82,10 @@ void main() {
     if (n_dot_l > 0.0 && bright > threshold) mask[i >> 5] |= 1u << (i & 31u);
   }
   imageStore(lists, tile, mask);
-  if ((mask.x | mask.y | mask.z | mask.w | every_tile) == 0u) return;
+  bool probe = false;
+  for (int i = 0; i < probe_count; ++i)
+    probe = probe || distance(centre, probe_spheres[i].xyz) < probe_spheres[i].w + radius;
+  if ((mask.x | mask.y | mask.z | mask.w | every_tile) == 0u && !probe) return;
   uint at = atomicAdd(tiles[0], 1u);
   atomicAdd(tiles[4], 4u);  // of the picture: a tile of 16 x 16 pixels is four work groups
   tiles[REFLECTION_TILES_HEADER + int(at)] = uint(tile.x) | uint(tile.y) << 16u;

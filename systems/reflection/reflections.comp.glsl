@@ -1,10 +1,11 @@
 #version 450 core
-// What wet ground mirrors, half size: rgb radiance (as if the surface were a perfect mirror with its own roughness), a
-// the share of its lobe that this replaces; the rest are the captured surroundings. Lamps' highlights are pass shade's,
+// What wet ground mirrors, half size: rgb radiance (as if the surface were a perfect mirror with its own roughness) less
+// the captured surroundings that it stands before, a the share of the lobe that it takes from them. Lamps' highlights are pass shade's,
 // at full size. One work group a tile of the list. See streak.h and screen_rays.glsl.
 #define GBUFFER_FIRST_UNIT 0
 #include "systems/reflection/mirror_texel.glsl"
 #include "systems/reflection/stand_ins.glsl"
+#include "systems/lighting/environment.glsl"
 #ifdef SCREEN_SPACE
 #include "systems/reflection/screen_rays.glsl"
 #endif
@@ -27,7 +28,8 @@ vec4 mirrored(ivec2 half_texel, ivec2 texel, float depth, uvec4 mask) {
   vec4 seen = screen_space(at, lobe, jitter);
   sum += screen_share * (stands + (1.0 - stands.a) * seen);
 #endif
-  return vec4(min(sum.rgb, vec3(6e4)), sum.a);
+  vec3 hidden = environment_around(at.mirror, surface.roughness).matt * (frame.sky_zenith.w * sum.a);
+  return vec4(min(sum.rgb - hidden, vec3(6e4)), sum.a);
 }
 
 void main() {

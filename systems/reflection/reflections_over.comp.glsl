@@ -48,21 +48,20 @@ vec4 reflection_at(ivec2 texel, float depth) {
   return sum / weights;
 }
 
+// What pass shade put there: without the windows and signs that are drawn as themselves.
+vec3 surroundings(Facing at, float roughness) {
+  Surroundings around = environment_around(at.mirror, roughness);
+  return mix(around.all, around.matt, drawn_share) * frame.sky_zenith.w;
+}
+
 void lay_over(ivec2 texel, float depth, float mirrors) {
   Surface surface = read_surface(texel);
-  if (drawn_share > 0.0)
-    surface.roughness = filtered_roughness(texel, depth, surface.normal, surface.roughness);
   Facing at = facing_of(surface, relative_position(vec2(texel) + 0.5, depth));
   vec3 reflected = mirrored_share(at, surface.roughness) * mirror_open(at, surface.roughness, surface.occlusion);
-  // What pass shade put there: without the windows and signs that are drawn as themselves.
-  Surroundings around = environment_around(at.mirror, surface.roughness);
-  vec3 rest = around.matt * frame.sky_zenith.w;
-  vec3 environment = mix(around.all * frame.sky_zenith.w, rest, drawn_share);
-  vec4 r = reflection_at(texel, depth);
-  vec3 change = r.rgb - r.a * rest;
+  vec3 change = reflection_at(texel, depth).rgb;
+#ifdef TOYSHOP
   // Artists' control of edges: f = (1 - n.v)^f_o, k_a = saturate(1 - f^2).
   float k_a = edge_attenuation(at.n_dot_v, edge_exponent);
-#ifdef TOYSHOP
   // Sampled at the pixel's own place on screen, moved by the normal (section 6.3). Of level ground the tangent frame is
   // that of the world, seen from the camera.
   vec3 right = vec3(frame.view[0][0], frame.view[1][0], frame.view[2][0]);
@@ -71,26 +70,29 @@ void lay_over(ivec2 texel, float depth, float mirrors) {
   vec2 moved = vec2(dot(tangent, right) * frame.size.y * frame.size.z, dot(tangent, ahead)) * distortion;
   vec2 uv = (vec2(texel) + 0.5) * frame.size.zw + (surface.normal.y > 0.7 ? moved : vec2(0.0));
   vec4 s = textureLod(streaks, uv, 0.0) * (surface.normal.y > 0.7 ? 1.0 : 0.0);
-  vec3 shown = s.rgb + (1.0 - s.a) * around.all * frame.sky_zenith.w;
-  change += toyshop_share * (k_a * shown - around.all * frame.sky_zenith.w);
+  vec3 all = environment_around(at.mirror, surface.roughness).all * frame.sky_zenith.w;
+  change += toyshop_share * (k_a * (s.rgb + (1.0 - s.a) * all) - all);
 #else
   const float toyshop_share = 0.0;
 #endif
-  change += (1.0 - toyshop_share) * published_edges * (k_a - 1.0) * (change + environment);
+  for (int once = 0; once < (published_edges > 0.0 ? 1 : 0); ++once) {
+    float attenuation = edge_attenuation(at.n_dot_v, edge_exponent) - 1.0;
+    change += (1.0 - toyshop_share) * published_edges * attenuation * (change + surroundings(at, surface.roughness));
+  }
 #ifdef WITH_PROBES
   bool near = false;
   for (int i = 0; i < int(probes.counts.x); ++i)
     near = near || distance(at.place, probes.place_radius[i].xyz) < probes.place_radius[i].w;
   for (int once = 0; once < (near ? 1 : 0); ++once) {
     vec4 probe = probe_radiance(at.place, at.mirror, surface.roughness);
-    change = mix(change, probe.rgb - environment, probe.a);
+    change = mix(change, probe.rgb - surroundings(at, surface.roughness), probe.a);
   }
 #endif
 #ifdef WITH_MIRRORS
   bool flat_here = max(mirror_applies(0, at.place, at.normal), mirror_applies(1, at.place, at.normal)) > 0.0;
   for (int once = 0; once < (flat_here ? 1 : 0); ++once) {
     vec4 mirrored = mirror_radiance(at.place, at.normal, surface.roughness, at.mirror);
-    change = mix(change, mirrored.rgb - environment, mirrored.a * planar_share);
+    change = mix(change, mirrored.rgb - surroundings(at, surface.roughness), mirrored.a * planar_share);
   }
 #endif
   vec4 light = imageLoad(colour, texel);

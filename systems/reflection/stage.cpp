@@ -113,7 +113,8 @@ Result<std::unique_ptr<ReflectionStage>> ReflectionStage::make(const MakePasses&
        "light_lists": "light_lists", "shadow_atlas": "shadow_atlas", "environment": "environment", "colour": "colour",
        "highlights": "highlights"},
       {"pass": "reflections", "depth": "depth", "albedo": "albedo", "normal": "normal", "emissive": "emissive",
-       "highlights": "highlights", "colour": "colour", "reflections": "reflections"},
+       "environment": "environment", "highlights": "highlights", "colour": "colour",
+       "reflections": "reflections"},
       {"pass": "reflections_over", "colour": "colour", "depth": "depth", "albedo": "albedo", "normal": "normal",
        "emissive": "emissive", "environment": "environment", "reflections": "reflections"}],
     "output": "colour"})json");
