@@ -62,24 +62,34 @@ float exposure_by(uint map, vec3 place, vec3 normal, vec3 spread) {
   bool mixed = caught > 0.0 && most > 0.0 && least <= 0.0;
   // A loop for an if: software OpenGL leaves a loop that no pixel is in, but walks through both sides of a branch.
   for (int once = 0; once < (mixed ? 1 : 0); ++once) {
-    float fallen = min(here > 0.0 ? here : most, 12.0);
+    // As high as the lowest of them stands, kerbs apart: the map knows the highest alone, and a cornice's wide edge would
+    // leak under the awning that it hides.
+    vec4 heights = mix(vec4(4.0), about, greaterThan(about, vec4(1.0)));
+    float fallen = min(min(here > 0.0 ? here : 4.0, 4.0),
+                       min(min(heights.x, heights.y), min(heights.z, heights.w)));
     open = 0.0;
     // A Gaussian by five points, each a tent about as wide as the steps between them, a power of two of texels so that it
     // stands still in the world. Walls lie along the fall, where far texels would be their own shelter: one tent, a texel
     // wide.
     const float weights[3] = float[3](0.3664, 0.2443, 0.0725);
+    const float sides[5] = float[5](0.6, -1.0, 0.0, 1.0, -0.6);
     bool wall = normal.y < 0.7;
     vec3 middle = on_map(map, off), step_p = (on_map(map, off + spread * fallen) - middle) * 0.9;
     vec3 side_p = on_map(map, off + across_wind * fallen) - middle;
     float texels = length(step_p.xy);
+    // At least as wide as hides the map's own stairs.
+    step_p *= max(1.0, 0.8 / max(texels, 1e-3));
+    side_p *= max(1.0, 1.2 / max(length(side_p.xy), 1e-3));
     int apart = wall || texels < 1.5 ? 1 : texels < 3.0 ? 2 : 4;
     vec3 size = occlusion.size_depth[map].xyz;
     for (int k = wall ? 0 : -2; k <= (wall ? 0 : 2); ++k) {
-      vec3 at = wall ? middle : middle + step_p * float(k) + side_p * ((k & 1) == 0 ? 0.5 : -0.5);
+      vec3 at = wall ? middle : middle + step_p * float(k) + side_p * sides[k + 2];
       open += (wall ? 1.0 : weights[abs(k)]) * open_on_map(map, at, size, apart);
     }
   }
-  return caught * open;
+  // A film would show already where a thousandth of the rain arrives; so few drops lie apart and dry on their own, and a
+  // film begins where they meet.
+  return caught * smoothstep(0.1, 0.9, open);
 }
 
 // Of the rain that wets now.
