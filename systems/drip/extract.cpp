@@ -59,10 +59,12 @@ struct Edge {
   std::uint16_t number;  // of FrameDrips::sources
   DripWater now;
   bool in_view, near;
+  bool site_in_view, site_near;     // of the site that is looked at
   const std::vector<float>* falls;  // as the wind is now; of earlier drops looked up anew
   glm::dvec3 wind;
   std::vector<std::uint16_t> clusters;  // of (piece, bucket): 1 + number, 0: none yet
   int buckets = 1;
+  double in_air_m2 = 0.0;  // what had drained when the oldest drop that may be in the air let go
   // Where drops land, as looked up last.
   const std::vector<float>* last = nullptr;
   glm::ivec3 cell{0};
@@ -127,22 +129,31 @@ void add_drop(Extraction& x, Edge& e, const DripSite& site, int index, const Fal
     const DripFall fall = fall_after(terminal, age, blows);
     return lip + glm::dvec3(air.x * fall.drift_s, -fall.fallen_m - 0.5e-3 * diameter, air.z * fall.drift_s);
   };
-  const double age = x.time_s - f.detach_s, landed = time_to_fall_s(terminal, ground);
+  const double age = x.time_s - f.detach_s, fallen = fallen_m_after(terminal, age);
+  // What is far out of the picture, or has landed far off, is left before the costlier questions.
+  if (fallen < ground) {
+    if (!e.site_in_view) return;
+    const glm::dvec3 about = lip - glm::dvec3(0.0, fallen, 0.0) - x.camera.position_m;
+    const double sways = blows * age, trail = terminal * std::max(static_cast<double>(x.camera.exposure_s), f.gap_s);
+    if (!inside(x.frustum, about, 0.1 + sways + trail)) return;
+  } else if (!e.site_near || ground >= longest_fall_m) {
+    return;
+  }
   const auto looks =
       random_bits(glm::uvec4(s.seed, static_cast<std::uint32_t>(index), static_cast<std::uint32_t>(f.k), 0x6c6f6f6bu));
-  if (age >= landed) {
-    if (!e.near || ground >= longest_fall_m || age - landed > landing_memory_s) return;
+  if (fallen >= ground) {
+    const double landed = std::min(time_to_fall_s(terminal, ground), age);
+    if (age - landed > landing_memory_s) return;
     const DripFall fall = fall_after(terminal, landed, blows);
     const glm::vec3 v(air.x * fall.drift_share, -fall.fall_speed_mps, air.z * fall.drift_share);
     glm::dvec3 at = lip + glm::dvec3(air.x * fall.drift_s, -ground, air.z * fall.drift_s);
     x.frame.landings.push_back({at, f.detach_s + landed, static_cast<float>(diameter), v, looks});
     return;
   }
-  if (!e.in_view) return;
   FrameDrip drop{};
-  drop.place_m = place(age);
   const double open = x.camera.exposure_s;
   const DripFall fall = fall_after(terminal, age, blows);
+  drop.place_m = lip + glm::dvec3(air.x * fall.drift_s, -fall.fallen_m - 0.5e-3 * diameter, air.z * fall.drift_s);
   drop.velocity_mps = glm::vec3(air.x * fall.drift_share, -fall.fall_speed_mps, air.z * fall.drift_share);
   if (open > 1e-6) drop.velocity_mps = glm::vec3((drop.place_m - place(std::max(age - open, 0.0))) / open);
   drop.diameter_mm = static_cast<float>(diameter);
@@ -191,7 +202,15 @@ void add_site(Extraction& x, Edge& e, int index, double earliest_drained) {
   const double water = site_water_m3(s, site, e.now.drained_m2);
   const std::int64_t fallen = drops_fallen(s, index, water);
   if (e.in_view) add_bead(x, e, site, index, water, fallen);
-  const std::int64_t first = drops_fallen(s, index, site_water_m3(s, site, earliest_drained));
+  // Its whole way, as wide as wind makes it.
+  const double aside = 0.1 + glm::length(e.wind) * s.set.wind * 0.1 * std::min(fall, 20.0) + 0.2;
+  e.site_in_view =
+      e.in_view && box_touches(x.frustum, glm::vec3(lip - glm::dvec3(0.0, 0.5 * fall, 0.0) - x.camera.position_m),
+                               glm::vec3(aside, 0.5 * fall + 0.1, aside));
+  e.site_near = e.near && distance2 <= drip_landing_reach_m * drip_landing_reach_m;
+  if (!e.site_in_view && !e.site_near) return;
+  const std::int64_t first =
+      drops_fallen(s, index, site_water_m3(s, site, e.site_near ? earliest_drained : e.in_air_m2));
   if (first >= fallen) return;
   const double per_drained = site.share * s.set.length_m / s.sites;
   const auto detached = [&](std::int64_t k) {
@@ -201,11 +220,14 @@ void add_site(Extraction& x, Edge& e, int index, double earliest_drained) {
   std::int64_t group = 1;
   while (hz > fastest_site_hz * static_cast<double>(group)) group *= 2;
   std::int64_t k = (first + group - 1) / group * group;
-  double before = k > 0 ? detached(k - group) : s.flows.front().time_s;
+  double before = k > 0 ? detached(k - group) : s.flows.front().time_s,
+         threshold = drip_threshold_m3(s, index, k - group);
   for (; k < fallen; k += group) {
-    const double when = detached(k);
+    const double next = drip_threshold_m3(s, index, k);
+    const double when = time_of_drained(s, (next - site.phase * s.drop_m3) / per_drained);
     if (when > x.time_s) break;
-    const double volume = drip_threshold_m3(s, index, k) - drip_threshold_m3(s, index, k - group);
+    const double volume = next - threshold;
+    threshold = next;
     add_drop(x, e, site, index, {when, volume, k, when - before}, static_cast<int>(group));
     before = when;
   }
@@ -247,7 +269,9 @@ void add_edge(Extraction& x, const DripSourceMotion& s) {
   e.clusters.assign(static_cast<std::size_t>((static_cast<int>(s.set.length_m / piece_m) + 1) * e.buckets), 0);
   // The smallest drop falls longest.
   const double small = diameter_mm_of(s.drop_m3 * (1.0 - std::min(s.set.jitter, 0.9f)));
-  const double window = time_to_fall_s(terminal_speed_mps(small), fall) + (e.near ? landing_memory_s : 0.0);
+  const double in_air = time_to_fall_s(terminal_speed_mps(small), fall);
+  const double window = in_air + (e.near ? landing_memory_s : 0.0);
+  e.in_air_m2 = water_at(s, x.time_s - std::min(in_air, drip_memory_s)).drained_m2;
   const double earliest = water_at(s, x.time_s - std::min(window, drip_memory_s)).drained_m2;
   for (int i = 0; i < s.sites; ++i) add_site(x, e, i, earliest);
 }

@@ -40,17 +40,24 @@ double neck_weber(double flow_m3ps, double lip_radius_mm) {
 DripFall fall_after(double terminal, double time_s, double wind_mps) {
   const double per_s = gravity_mps2 / terminal, s = std::max(per_s * time_s, 0.0);
   // ln cosh s = s + ln(1 + exp(-2 s)) - ln 2, which does not overflow.
-  const double e = std::exp(-s), tanh = -std::expm1(-2.0 * s) / (1.0 + e * e), sech = 2.0 * e / (1.0 + e * e);
+  const double e = std::exp(-s), tanh = (1.0 - e * e) / (1.0 + e * e), sech = 2.0 * e / (1.0 + e * e);
   const double ln_cosh = s < 1e-2 ? 0.5 * s * s * (1.0 - s * s / 6.0) : s + std::log1p(e * e) - std::numbers::ln2;
-  const double gd = 2.0 * std::atan(-std::expm1(-s) / (1.0 + e)), wind = 0.55 * std::max(wind_mps, 0.0) / terminal;
+  const double gd = 2.0 * std::atan((1.0 - e) / (1.0 + e)), wind = 0.55 * std::max(wind_mps, 0.0) / terminal;
   const double lag = wind * gd > 1e-6 ? std::log1p(wind * gd) / wind : gd;
   return {terminal / per_s * ln_cosh, terminal * tanh, std::max(s - lag, 0.0) / per_s, 1.0 - sech / (1.0 + wind * gd)};
+}
+
+double fallen_m_after(double terminal, double time_s) {
+  const double per_s = gravity_mps2 / terminal, s = std::max(per_s * time_s, 0.0), e = std::exp(-s);
+  return terminal / per_s *
+         (s < 1e-2 ? 0.5 * s * s * (1.0 - s * s / 6.0) : s + std::log(1.0 + e * e) - std::numbers::ln2);
 }
 
 double time_to_fall_s(double terminal, double fall_m) {
   const double per_s = gravity_mps2 / terminal, c = std::max(fall_m, 0.0) * per_s / terminal;
   // acosh(exp c) = c + ln(1 + sqrt(1 - exp(-2 c))).
-  return (c + std::log1p(std::sqrt(-std::expm1(-2.0 * c)))) / per_s;
+  const double rest = c < 1e-3 ? 2.0 * c * (1.0 - c * (1.0 - c / 1.5)) : 1.0 - std::exp(-2.0 * c);
+  return (c + std::log(1.0 + std::sqrt(rest))) / per_s;
 }
 
 }  // namespace petrichor

@@ -29,6 +29,7 @@ struct DripFall {
   double drift_s, drift_share;  // times the wind: how far, how fast
 };
 DripFall fall_after(double terminal_mps, double time_s, double wind_mps = 0.0);
+double fallen_m_after(double terminal_mps, double time_s);  // its fallen_m alone
 double time_to_fall_s(double terminal_mps, double fall_m);
 
 }  // namespace petrichor

@@ -106,12 +106,12 @@ struct Setting {
 constexpr Setting settings[] = {{SplashRung::random, "random", "5 k, as printed", 5000, true},
                                 {SplashRung::random, "random", "1 k", 1000},
                                 {SplashRung::random, "random", "5 k", 5000},
-                                {SplashRung::field, "field", "500", 500},
-                                {SplashRung::field, "field", "5 k", 5000},
-                                {SplashRung::field, "field", "20 k", 20000},
-                                {SplashRung::secondary, "secondary", "500", 500},
-                                {SplashRung::secondary, "secondary", "5 k", 5000},
-                                {SplashRung::secondary, "secondary", "20 k", 20000}};
+                                {SplashRung::field, "field", "250", 250},
+                                {SplashRung::field, "field", "1 k", 1000},
+                                {SplashRung::field, "field", "all", 20000},
+                                {SplashRung::secondary, "secondary", "250", 250},
+                                {SplashRung::secondary, "secondary", "1 k", 1000},
+                                {SplashRung::secondary, "secondary", "all", 20000}};
 
 double moment(int i) {
   return 12.0 + 0.41 * i;

@@ -171,6 +171,41 @@ TEST_F(SplashesDrawn, AFloodIsCappedAndKeepsItsBrightness) {
   RecordProperty("ratio", std::to_string(capped / all));
 }
 
+// The awning is 10 cm thick: what lands on it is no further from its underside than maps of shelter are wrong.
+TEST_F(SplashesDrawn, NoneShowsThroughARoofThatIsSeenFromBelow) {
+  Frame f = frame(9.0, 50.0f);
+  f.camera.position_m = {0.0, 1.6, -1.0};
+  f.camera.orientation = glm::angleAxis(glm::radians(35.0f), glm::vec3(1, 0, 0));
+  ASSERT_TRUE(stage->draw(f));
+  int on_roof = 0;
+  for (const SplashGpu& g : read_splashes()) on_roof += f.camera.position_m.y + double(g.place_radius.y) > 2.5;
+  EXPECT_EQ(on_roof, 0);
+  // From above they are there.
+  f.camera.position_m = {0.0, 5.5, -1.0};
+  f.camera.orientation = glm::angleAxis(glm::radians(-40.0f), glm::vec3(1, 0, 0));
+  ASSERT_TRUE(stage->draw(f));
+  for (const SplashGpu& g : read_splashes()) on_roof += f.camera.position_m.y + double(g.place_radius.y) > 2.5;
+  EXPECT_GT(on_roof, 20);
+}
+
+// Droplets outlive their crown tenfold: at a small cap they must not take the crowns' places.
+TEST_F(SplashesDrawn, DropletsDoNotUseUpTheCapOfCrowns) {
+  int crowns[2] = {0, 0};
+  for (int i = 0; i < 4; ++i)
+    for (const SplashRung rung : {SplashRung::field, SplashRung::secondary}) {
+      Frame f = frame(5.0 + 0.31 * i, 50.0f);
+      auto set = default_splashes();
+      set->most_splashes = 400;
+      f.splashes = set;
+      f.techniques.set(Effect::splashes, rung);
+      ASSERT_TRUE(stage->draw(f));
+      for (const SplashGpu& g : read_splashes())
+        crowns[rung == SplashRung::secondary] += (g.bits.y & SPLASH_CROWN) != 0u;
+    }
+  EXPECT_GT(crowns[0], 400);
+  EXPECT_GT(crowns[1], 0.8 * crowns[0]);
+}
+
 TEST_F(SplashesDrawn, AnyOrderOfFramesGivesTheSameBytes) {
   const auto picture = [&](double time_s, double x) {
     Frame f = frame(time_s, 50.0f);
