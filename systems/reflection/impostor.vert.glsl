@@ -19,6 +19,10 @@ void main() {
   vec3 to = q.centre_kind.xyz;
   vec3 across = normalize(vec3(-to.z, 0.0, to.x) + vec3(1e-6, 0.0, 0.0)) * max(length(q.across_seen.xyz), 0.03);
   float tall = max(length(q.up_reach.xyz), 0.03), distance_m = q.radiance.w;
+  // Far lamps are narrower than a texel of the half-size buffer and would fall between two: a texel wide, dimmed alike.
+  float texel_m = 1.2 * distance_m / frame.lens.z, wide = length(across);
+  float narrower = min(wide / texel_m, 1.0);
+  across /= narrower;
   // Mirrored: what was its top is its lower end, which is drawn out towards the viewer.
   float drawn_out = stretch * distance_m;
   float top_m = 2.0 * ground_m - (to.y - tall), low_m = 2.0 * ground_m - (to.y + tall) - drawn_out;
@@ -28,8 +32,8 @@ void main() {
   // "the reflections materials shaders strongly saturate the dominant colors". What is drawn out is thinned.
   float grey = dot(q.radiance.rgb, vec3(0.2126, 0.7152, 0.0722));
   vec3 saturated = max(mix(vec3(grey), q.radiance.rgb, saturation), vec3(0.0));
-  float thinner = 2.0 * tall / (2.0 * tall + drawn_out);
-  shine = vec4(saturated * thinner, q.across_seen.w * (post ? 0.9 : thinner));
+  float thinner = narrower * 2.0 * tall / (2.0 * tall + drawn_out);
+  shine = vec4(saturated * thinner, q.across_seen.w * (post ? 0.9 * narrower : thinner));
   shine.rgb *= q.across_seen.w;
   rounded = q.centre_kind.w == float(REFLECTOR_LAMP) ? 1.0 : 0.0;
 }

@@ -165,6 +165,41 @@ Reflector reflector_of(const Part& part) {
   return r;
 }
 
+// A closed box much thinner than it is wide (a light box, a lit poster) shines to two sides; turned to whoever looks it
+// would shine to all. Its large faces' normal, or none. A tube's normals point all round: two thirds of them to any
+// side.
+std::optional<glm::vec3> sheet_normal(const Part& part) {
+  glm::vec3 largest(0.0f);
+  for (std::size_t i = 0; i + 2 < part.corners.size(); i += 3) {
+    const glm::vec3 n = glm::cross(part.corners[i + 1] - part.corners[i], part.corners[i + 2] - part.corners[i]);
+    if (glm::dot(n, n) > glm::dot(largest, largest)) largest = n;
+  }
+  if (glm::dot(largest, largest) <= 0.0f) return {};
+  const glm::vec3 axis = glm::normalize(largest);
+  float along = 0.0f, all = 0.0f;
+  for (std::size_t i = 0; i + 2 < part.corners.size(); i += 3) {
+    const glm::vec3 n = glm::cross(part.corners[i + 1] - part.corners[i], part.corners[i + 2] - part.corners[i]);
+    along += std::abs(glm::dot(n, axis)), all += glm::length(n);
+  }
+  return along > 0.75f * all ? std::optional(axis) : std::nullopt;
+}
+
+// Both sides of a sheet, each with the mean radiance of the whole.
+void add_sheet(const Part& part, glm::vec3 normal, std::vector<Reflector>& found) {
+  for (const float side : {1.0f, -1.0f}) {
+    Part half;
+    half.corners = part.corners;
+    half.normal = normal * side;
+    half.area = 1.0f;
+    Reflector r = reflector_of(half);
+    float depth = 0.0f;  // of the face before the middle
+    for (const glm::vec3& c : part.corners) depth = std::max(depth, glm::dot(c - r.centre_m, normal * side));
+    r.centre_m += normal * (side * depth);
+    r.radiance = part.flux / part.area;
+    found.push_back(r);
+  }
+}
+
 // Taller than wide, and thin through most of its height: the width is that of its middle half of vertices.
 std::optional<Reflector> post_of(const Model& model, const Mesh& mesh) {
   std::vector<glm::vec3> places;
@@ -204,7 +239,14 @@ std::vector<Reflector> find_reflectors(const Model& model, const Mesh& mesh) {
     if (primitive.material == no_index) continue;
     const Material& material = model.materials[static_cast<std::size_t>(primitive.material)];
     if (std::max({material.emissive.x, material.emissive.y, material.emissive.z}) < dimmest_cd_m2) continue;
-    for (const Part& part : grouped(parts_of(model, primitive, material))) found.push_back(reflector_of(part));
+    for (const Part& part : grouped(parts_of(model, primitive, material))) {
+      const bool closed = glm::length(part.normal) <= 0.5f * part.area;
+      const auto sheet = closed ? sheet_normal(part) : std::nullopt;
+      if (sheet)
+        add_sheet(part, *sheet, found);
+      else
+        found.push_back(reflector_of(part));
+    }
   }
   if (const auto post = post_of(model, mesh)) found.push_back(*post);
   return found;

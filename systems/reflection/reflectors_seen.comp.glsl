@@ -1,7 +1,7 @@
 #version 450 core
 // How much of each reflector is seen, by sixteen looks at the depth of the picture: what something nearer hides from the
-// eye is hidden from the ground before the eye, too. Beyond the picture's edge the look is taken at the edge, so that a
-// lamp that crosses it does not flare up.
+// eye is hidden from the ground before the eye, too. Beyond the picture's edge the look is taken at the edge, the more
+// kindly the farther beyond: what is hidden does not flare up as it crosses, what lies on a wall that is not does not fade.
 #include "systems/geometry/position.glsl"
 #include "systems/reflection/reflection_shared.h"
 
@@ -26,7 +26,8 @@ void main() {
     vec2 pixel = clamp((clip.xy / clip.w * 0.5 + 0.5) * frame.size.xy, vec2(0.5), frame.size.xy - 0.5);
     float nearest = texelFetch(depth_map, ivec2(pixel), 0).r;
     float surface_m = axial_distance_m(max(nearest, 1e-7));
-    float tolerance = 0.5 + 0.03 * clip.w + q.up_reach.w * 0.5;
+    vec2 beyond = max(abs(clip.xy / clip.w) - 1.0, vec2(0.0));
+    float tolerance = 0.5 + 0.03 * clip.w + q.up_reach.w * 0.5 + clip.w * max(beyond.x, beyond.y);
     seen += smoothstep(clip.w - 2.0 * tolerance, clip.w - tolerance, surface_m);
     asked += 1.0;
   }
