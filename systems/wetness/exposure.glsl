@@ -31,10 +31,14 @@ float open_about(uint map, vec3 place) {
   return open_on_map(map, on_map(map, place), occlusion.size_depth[map].xyz, 1);
 }
 
-// Metres that the map's surface stands above a place along the fall; 0 or less: it is in the open.
-float covered_m(uint map, vec3 place) {
-  float hit = occlusion_first_hit_m(map, place);
-  return hit < -2.0 * occlusion.size_depth[map].z ? -hit : 0.0;
+// Metres that the map's surface stands above a place along the fall; 0 or less: it is in the open. p: of the map's 0 to
+// 1, and metres along the fall. As occlusion.glsl's occlusion_first_hit_m.
+float covered_m(uint map, vec3 p) {
+  vec4 size = occlusion.size_depth[map];
+  bool off_map = any(greaterThanEqual(abs(p.xy - 0.5), vec2(0.5)));
+  float depth = texelFetch(occlusion_depth, ivec3(ivec2(clamp(p.xy, vec2(0.0), vec2(0.999)) * size.x), int(map)), 0).r;
+  float above = p.z - (1.0 - depth) * size.y;
+  return !off_map && depth > 0.0 && above > 2.0 * size.z ? above : 0.0;
 }
 
 // Gusts blow across the mean wind as well: turbulence near the ground is about 0.75 as strong that way, but of the spread
@@ -52,10 +56,14 @@ float exposure_by(uint map, vec3 place, vec3 normal, vec3 spread) {
   if (occlusion.fall_texel[map].w <= 0.0) return caught;
   vec3 off = occlusion_off_surface(map, place, normal);
   // Is there anything about that could shelter it: here, and to where the spread reaches from a roof 4 m above?
-  vec3 across_wind = vec3(-spread.z, 0.0, spread.x) * lateral_share, reach = spread * 7.0;
-  float here = covered_m(map, off);
-  vec4 about = vec4(covered_m(map, off - reach - 7.0 * across_wind), covered_m(map, off - reach + 7.0 * across_wind),
-                    covered_m(map, off + reach - 7.0 * across_wind), covered_m(map, off + reach + 7.0 * across_wind));
+  mat4 to_map = occlusion.map_from_relative[map];
+  vec3 p = (to_map * vec4(off, 1.0)).xyz;
+  vec3 along_p = mat3(to_map) * spread;
+  vec3 across_p = mat3(to_map) * (vec3(-spread.z, 0.0, spread.x) * lateral_share);
+  vec3 reach = 7.0 * along_p, aside = 7.0 * across_p;
+  float here = covered_m(map, p);
+  vec4 about = vec4(covered_m(map, p - reach - aside), covered_m(map, p - reach + aside),
+                    covered_m(map, p + reach - aside), covered_m(map, p + reach + aside));
   float most = max(here, max(max(about.x, about.y), max(about.z, about.w)));
   float least = min(here, min(min(about.x, about.y), min(about.z, about.w)));
   float open = here > 0.0 ? 0.0 : 1.0;
@@ -74,14 +82,14 @@ float exposure_by(uint map, vec3 place, vec3 normal, vec3 spread) {
     const float weights[3] = float[3](0.3664, 0.2443, 0.0725);
     const float sides[5] = float[5](0.6, -1.0, 0.0, 1.0, -0.6);
     bool wall = normal.y < 0.7;
-    vec3 middle = on_map(map, off), step_p = (on_map(map, off + spread * fallen) - middle) * 0.9;
-    vec3 side_p = on_map(map, off + across_wind * fallen) - middle;
+    vec3 size = occlusion.size_depth[map].xyz, texels_of = vec3(size.xx, 1.0);
+    vec3 middle = vec3(clamp(p.xy, vec2(0.002), vec2(0.998)) * size.x - 0.5, p.z);
+    vec3 step_p = along_p * texels_of * (0.9 * fallen), side_p = across_p * texels_of * fallen;
     float texels = length(step_p.xy);
     // At least as wide as hides the map's own stairs.
     step_p *= max(1.0, 0.8 / max(texels, 1e-3));
     side_p *= max(1.0, 1.2 / max(length(side_p.xy), 1e-3));
     int apart = wall || texels < 1.5 ? 1 : texels < 3.0 ? 2 : 4;
-    vec3 size = occlusion.size_depth[map].xyz;
     for (int k = wall ? 0 : -2; k <= (wall ? 0 : 2); ++k) {
       vec3 at = wall ? middle : middle + step_p * float(k) + side_p * sides[k + 2];
       open += (wall ? 1.0 : weights[abs(k)]) * open_on_map(map, at, size, apart);
