@@ -23,10 +23,10 @@ const std::vector<Setting>& settings() {
       {ReflectionRung::toyshop, "toyshop", "as published", {}},
       {ReflectionRung::impostors, "impostors", "", {}},
       {ReflectionRung::impostors, "impostors", "k_a", {{"published_edges", 1.0}}},
-      {ReflectionRung::screen_space, "screen_space", "1 ray", {{"rays", 1}}},
+      {ReflectionRung::screen_space, "screen_space", "1 ray", {}},
       {ReflectionRung::screen_space, "screen_space", "2 rays", {{"rays", 2}}},
-      {ReflectionRung::screen_space, "screen_space", "4 rays", {}},
-      {ReflectionRung::screen_space, "screen_space", "8 rays, 48 steps", {{"rays", 8}, {"steps", 48}}}};
+      {ReflectionRung::screen_space, "screen_space", "4 rays", {{"rays", 4}}},
+      {ReflectionRung::screen_space, "screen_space", "4 rays, 48 steps", {{"rays", 4}, {"steps", 48}}}};
   return all;
 }
 
@@ -52,7 +52,7 @@ Difference difference(const std::vector<glm::vec4>& picture, const std::vector<g
 }  // namespace
 
 Result<void> chart_reflections(const ChartRun& run, const MakePasses& passes) {
-  const int width = run.software ? 128 : 256, height = run.software ? 72 : 144;  // of the pictures compared
+  const int width = run.software ? 192 : 256, height = run.software ? 108 : 144;  // of the pictures compared
   const int timed_width = run.software ? 640 : 1024, timed_height = run.software ? 360 : 768;
   const int repeats = run.software ? 5 : 60;
   struct Case {

@@ -38,7 +38,7 @@ vec4 reflection_at(ivec2 texel, float depth) {
   float weights = 1e-6;
   for (int i = 0; i < 4; ++i) {
     ivec2 step = ivec2(i & 1, i >> 1), from = min(first + step, last);
-    float near = (step.x == 1 ? part.x : 1.0 - part.x) * (step.y == 1 ? part.y : 1.0 - part.y) + 0.2;
+    float near = (step.x == 1 ? part.x : 1.0 - part.x) * (step.y == 1 ? part.y : 1.0 - part.y) + 1e-3;
     ivec2 stands = picture_texel(from);
     float other = read_depth(stands);
     float same = max(1.0 - abs(other - depth) / (0.05 * depth), 0.0) + 1e-4;
