@@ -86,6 +86,12 @@ void mark_probe(Scene& scene, int node, glm::vec3 centre_m, float radius_m) {
   scene.nodes[static_cast<std::size_t>(node)].extras_json = extras.dump();
 }
 
+void mark_wader(Scene& scene, int node, float radius_m, float draft_mm) {
+  nlohmann::json extras;
+  extras["wader"] = {{"radius_m", radius_m}, {"draft_mm", draft_mm}};
+  scene.nodes[static_cast<std::size_t>(node)].extras_json = extras.dump();
+}
+
 Scene make_city() {
   Scene scene;
   const StandingWater water = flood_streets();

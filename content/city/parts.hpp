@@ -35,6 +35,8 @@ int awning_stripes(float length_m);
 void mark_pane(Scene&, int parent, const glm::mat4& frame, glm::vec2 size_m);
 // The object of a node mirrors its own surroundings, as captured at a place along the node's axes.
 void mark_probe(Scene&, int node, glm::vec3 centre_m, float radius_m);
+// Leaves a wake where it moves through standing water.
+void mark_wader(Scene&, int node, float radius_m, float draft_mm);
 
 inline const glm::vec3 sodium_light{1.0f, 0.60f, 0.24f};
 inline const glm::vec3 white_light{1.0f, 0.86f, 0.68f};

@@ -100,7 +100,15 @@ void add_vehicles(Scene& scene) {
   // Two with their lights on: one waits at the crossing, tail towards the south; one comes down from the north.
   head_lights(scene, parent, "waiting_taxi", place(taxi_on, "waiting_taxi", {1.75f, 13.9f}, north + 0.01f), saloon,
               false);
-  head_lights(scene, parent, "coming_car", place(small_on, "coming_car", {-1.8f, -19.0f}, south - 0.02f), small, true);
+  const glm::mat4 coming = place(small_on, "coming_car", {-1.8f, -19.0f}, south - 0.02f);
+  head_lights(scene, parent, "coming_car", coming, small, true);
+  // Its front wheels push standing water aside: side by side with it in the tree, as its lamps are.
+  for (const float side : {-1.0f, 1.0f}) {
+    const glm::vec3 foot(side * (small.half_width_m - 0.09f), 0.0f, 0.31f * small.length_m);
+    mark_wader(scene, add_node(scene, side < 0.0f ? "coming_car_wheel_right" : "coming_car_wheel_left", parent, -1,
+                               coming * glm::translate(glm::mat4(1.0f), foot)),
+               0.12f, 10.0f);
+  }
 }
 
 }  // namespace petrichor::city

@@ -71,8 +71,10 @@ void extract_ripples(const Registry& registry, Frame& frame, double time_s) {
     }
   // Nothing falls, nothing moves and what there was has died.
   const RippleTick* newest = ripples->at(ripples->tick);
+  const bool waked =
+      static_cast<double>(ripples->tick - h->last_wake) * h->step_s < ripple_epoch_s + ripple_memory_s;
   const bool calm =
-      newest && !newest->rain && newest->slope_variance < 1e-9f && ripples->drips.empty() && h->waders.empty();
+      newest && !newest->rain && newest->slope_variance < 1e-9f && ripples->drips.empty() && !waked;
   if (!calm) frame.ripples = std::move(ripples);
 }
 

@@ -124,6 +124,7 @@ void add_wakes(const Registry& registry, RippleHistory& h, RippleTick& t) {
   // The order of components in storage must not matter.
   std::sort(wakes.begin(), wakes.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
   for (const auto& [entity, wake] : wakes) t.wakes.push_back(wake);
+  if (!wakes.empty()) h.last_wake = h.next_tick;
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <deque>
+#include <limits>
 
 #include "components/water.hpp"
 #include "components/weather.hpp"
@@ -14,10 +15,11 @@
 namespace petrichor {
 
 // The waves at a time are those of a simulation that began from rest this long before the newest whole multiple of
-// ripple_epoch_s: what is older has died to exp(-2 s x decay). So a frame that is drawn alone makes up at most
-// ripple_epoch_s + ripple_memory_s of ticks, and one that follows another only what lies between them; while one epoch
-// ends, the waves of the next are begun beside it (a third more work).
-constexpr double ripple_epoch_s = 6.0, ripple_memory_s = 2.0;
+// ripple_epoch_s: what is older has died to exp(-1.5 s x decay), 7% of a wave and 0.5% of the slopes' variance. So a
+// frame that is drawn alone makes up at most ripple_epoch_s + ripple_memory_s of ticks (480), and one that follows
+// another only what lies between them; the waves of the next epoch are made beside it a few ticks a frame (three fifths
+// more work).
+constexpr double ripple_epoch_s = 2.5, ripple_memory_s = 1.5;
 
 // The first tick of the run that gives the waves at `tick`, 0 or later; of the near tile too, which also begins anew
 // where it was set down anew at tick `since`.
@@ -39,6 +41,7 @@ struct RippleHistory {
   std::int64_t next_tick = -1;
   float slope_variance = 0.0f;
   std::vector<WaderPlace> waders;  // at the last tick
+  std::int64_t last_wake = std::numeric_limits<std::int64_t>::min() / 2;  // tick
   std::deque<std::shared_ptr<const RippleChunk>> full;
   RippleChunk newest;
 };

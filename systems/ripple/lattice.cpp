@@ -9,6 +9,10 @@
 
 namespace petrichor {
 
+float seed_cells(const RippleSettings& settings, int cells) {
+  return std::min(settings.seed_cells, std::max(settings.seed_cells * static_cast<float>(cells) / 256.0f, 1.5f));
+}
+
 void RippleLattice::rest(int cells_now, bool near_now) {
   const std::size_t plane = static_cast<std::size_t>(cells_now) * cells_now * 4, planes = near_now ? 3 : 2;
   if (cells != cells_now || near != near_now || state.bytes < plane * planes) {
@@ -84,20 +88,26 @@ const RippleRun* RippleWaves::bring(const RipplePrograms& programs, const FrameR
   };
   const std::int64_t start = begin(frame.tick);
   if (!fits(runs[0], start) && fits(runs[1], start)) std::swap(runs[0], runs[1]);
-  if (!fits(runs[0], start)) runs[0].begun = false;
-  advance(programs, frame, scheme, cells, runs[0], near, start, since);
+  const bool goes_on = fits(runs[0], start);
+  if (!goes_on) runs[0].begun = false;
+  const std::int64_t stood = goes_on ? runs[0].tick : frame.tick;
+  advance(programs, frame, scheme, cells, runs[0], near, start, since, frame.tick);
   // The next epoch's waves begin before it does.
   const auto memory = static_cast<std::int64_t>(std::llround(ripple_memory_s / frame.step_s));
   const std::int64_t next = begin(frame.tick + memory);
   if (next != start && next <= frame.tick) {
     if (!fits(runs[1], next)) runs[1].begun = false;
-    advance(programs, frame, scheme, cells, runs[1], near, next, since);
+    // A frame that had to make up much leaves this to those after it. When it is done does not change what it is.
+    const std::int64_t ticks = goes_on ? std::max<std::int64_t>(2 * (frame.tick - stood), 4) : 0;
+    const std::int64_t stands = runs[1].begun ? runs[1].tick : next - 1;
+    advance(programs, frame, scheme, cells, runs[1], near, next, since, std::min(frame.tick, stands + ticks));
   }
   return &runs[0];
 }
 
 void RippleWaves::advance(const RipplePrograms& programs, const FrameRipples& frame, const RippleScheme& scheme,
-                          int cells, RippleRun& run, bool near, std::int64_t start, std::int64_t since) {
+                          int cells, RippleRun& run, bool near, std::int64_t start, std::int64_t since,
+                          std::int64_t until) {
   if (!run.begun) {
     run.lattice.rest(cells, near);
     run.history = frame.history;
@@ -107,19 +117,21 @@ void RippleWaves::advance(const RipplePrograms& programs, const FrameRipples& fr
     run.begun = true;
     run.euler = scheme.euler;
   }
-  if (run.tick >= frame.tick) return;
+  if (run.tick >= until) return;
   const std::int64_t first = run.tick + 1;
   const double shared_cell_m = frame.settings.tile_m / cells;
+  RippleSettings settings = frame.settings;
+  settings.seed_cells = seed_cells(settings, cells);
   // All ticks' seeds, in one upload.
   std::vector<RippleSeedGpu> seeds;
   std::vector<int> begins;
   std::vector<RippleImpact> landed;
   if (near) {
     // Ticks before the first known one have no rain.
-    landed = drops_.impacts(frame, std::max(first, frame.first_tick() + 1), frame.tick, since, cells);
+    landed = drops_.impacts(frame, std::max(first, frame.first_tick() + 1), until, since, cells);
   }
   auto next_landed = landed.begin();
-  for (std::int64_t tick = first; tick <= frame.tick; ++tick) {
+  for (std::int64_t tick = first; tick <= until; ++tick) {
     begins.push_back(static_cast<int>(seeds.size()));
     const RippleTick& t = *frame.at(tick);
     if (near) {
@@ -131,17 +143,17 @@ void RippleWaves::advance(const RipplePrograms& programs, const FrameRipples& fr
       };
       for (; next_landed != landed.end() && next_landed->tick <= tick; ++next_landed)
         if (next_landed->tick == tick)
-          seeds.push_back(seed_of(*next_landed, in_cells(next_landed->place_m), cell, frame.settings));
+          seeds.push_back(seed_of(*next_landed, in_cells(next_landed->place_m), cell, settings));
       for (const RippleWake& wake : t.wakes)
         seeds.push_back(seed_of(wake, in_cells(wake.place_m), cell, frame.settings.published));
     } else {
       for (const RippleImpact& i : shared_impacts(t, tick, frame.step_s, frame.settings.tile_m))
-        seeds.push_back(seed_of(i, i.place_m / shared_cell_m - 0.5, shared_cell_m, frame.settings));
+        seeds.push_back(seed_of(i, i.place_m / shared_cell_m - 0.5, shared_cell_m, settings));
     }
   }
   begins.push_back(static_cast<int>(seeds.size()));
   if (!seeds.empty()) upload(seeds_, std::span<const RippleSeedGpu>(seeds));
-  for (std::int64_t tick = first; tick <= frame.tick; ++tick) {
+  for (std::int64_t tick = first; tick <= until; ++tick) {
     const auto i = static_cast<std::size_t>(tick - first);
     double cell = shared_cell_m;
     glm::ivec2 shift(0);
@@ -155,7 +167,7 @@ void RippleWaves::advance(const RipplePrograms& programs, const FrameRipples& fr
                      shift, seeds_, begins[i], begins[i + 1] - begins[i]);
     ++steps_;
   }
-  run.tick = frame.tick;
+  run.tick = until;
 }
 
 std::size_t RippleWaves::bytes() const {

@@ -22,6 +22,11 @@ struct RippleScheme {
   friend bool operator==(const RippleScheme&, const RippleScheme&) = default;
 };
 
+// Least deviation of a seed in cells: what the setting says of 256 cells and more. A coarser lattice is not given wider
+// rings, whose waves would all be too slow, but fewer cells to a ring: at 128 those of 1.5 cells are truer by half than
+// those of 3, which are worse than still water (chart ripples).
+float seed_cells(const RippleSettings&, int cells);
+
 // The programs of pass `ripples`.
 struct RipplePrograms {
   const Program *stamp, *step, *step_near;
@@ -58,7 +63,7 @@ class RippleWaves {
 
  private:
   void advance(const RipplePrograms&, const FrameRipples&, const RippleScheme&, int cells, RippleRun&, bool near,
-               std::int64_t start, std::int64_t since);
+               std::int64_t start, std::int64_t since, std::int64_t until);
   std::array<RippleRun, 2> shared_, near_;
   FieldDrops drops_;
   Buffer seeds_;

@@ -95,7 +95,7 @@ void draw_ripples(RipplesGpu& gpu, PassContext& context) {
   // Layers 1 and 2, the tile of the world near the eye. Of drips, too, where there is no near lattice.
   RippleUniforms uniforms{};
   uniforms.tile = {1.0f / settings.tile_m, shares.rings + shares.lattice, 0.0f, static_cast<float>(level)};
-  const double deviation = std::max<double>(natural_seed_m, settings.seed_cells * tile_cell_m);
+  const double deviation = std::max<double>(natural_seed_m, seed_cells(settings, cells) * tile_cell_m);
   uniforms.slopes = {newest->slope_variance * settings.strength * settings.strength,
                      static_cast<float>(peak_wave_number(deviation)), 0.0f, 0.35f};
   const double near_cell = newest->near_cell_m;
@@ -104,7 +104,7 @@ void draw_ripples(RipplesGpu& gpu, PassContext& context) {
     const glm::dvec2 eye(frame.camera.position_m.x, frame.camera.position_m.z);
     uniforms.near_place = glm::vec4(glm::vec2(low - eye), static_cast<float>(1.0 / (near_cell * cells)), 0.0f);
     uniforms.slopes.z =
-        static_cast<float>(peak_wave_number(std::max<double>(natural_seed_m, settings.seed_cells * near_cell)));
+        static_cast<float>(peak_wave_number(std::max<double>(natural_seed_m, seed_cells(settings, cells) * near_cell)));
     if (shares.near > 0.0f && map.layers > 1) {
       if (const RippleRun* run = gpu.waves.bring(programs, ripples, shares.scheme, cells, true)) {
         draw_slopes(context, *run, ripples, near_cell, settings.strength, true, false, level);

@@ -6,6 +6,8 @@
 
 #include "engine/core/bench_row.hpp"
 #include "systems/splatter/bench.hpp"
+#include "systems/splatter/placed.hpp"
+#include "systems/splatter/ring_truth.hpp"
 #include "systems/splatter/splatter.hpp"
 #include "systems/splatter/stage.hpp"
 #include "systems/splatter/truth.hpp"
@@ -71,9 +73,101 @@ const Setting settings[] = {{HaloRung::layer, "layer", "8 steps", 8, false},
                             {HaloRung::fins, "fins", "", 16, false},
                             {HaloRung::fins, "fins", "as printed", 16, true}};
 
+struct RingSetting {
+  const char* label;
+  int shells;
+  bool published;
+};
+const RingSetting ring_settings[] = {{"1 shell", 1, false},     {"2 shells", 2, false},       {"3 shells", 3, false},
+                                     {"6 shells", 6, false},    {"16 shells", 16, false},     {"2 as printed", 2, true},
+                                     {"6 as printed", 6, true}, {"16 as printed", 16, true}};
+// Near, and from the side.
+const Shot ring_shots[] = {{{0.3f, 2.0f, 1.6f}, {0.0f, 1.2f, 0.4f}}, {{1.5f, 1.9f, 1.2f}, {0.0f, 1.3f, 0.2f}}};
+constexpr float ring_view_deg = 30.0f;
+constexpr double ring_moments_s[] = {20.0, 20.113, 20.227};
+
+// Of pictures of twice the size.
+std::vector<double> halved(const std::vector<double>& picture, int width, int height) {
+  return blocks(picture, 2 * width, 2 * height);
+}
+
+Result<void> chart_splatter(const ChartRun& run) {
+  // Rings are ten pixels wide: under six they fade, under two there are none.
+  const int width = 480, height = 270;
+  Chart chart;
+  chart.name = chart.effect = "splatter";
+  chart.title = "Rings of splatter on a car's roof that fills the picture, 50 mm/h";
+  chart.device = run.device;
+  chart.width = width;
+  chart.height = height;
+  chart.error_label = "root mean square error of the rings' light (no rings: 1)";
+  const Model model = body_model();
+  std::vector<std::vector<double>> truth;
+  double off = 0.0, true_sum = 0.0;
+  auto fine = set_stage(run.software, model, 2 * width, 2 * height, 50.0f);
+  if (!fine) return tl::unexpected(fine.error());
+  for (const Shot& shot : ring_shots)
+    for (const double when : ring_moments_s) {
+      SplatterStage& s = **fine;
+      s.frame.time_s = when;
+      s.frame.techniques.set(Effect::halos, HaloRung::none);
+      s.frame.techniques.set(Effect::splatter, SplatterRung::none);
+      look(s.frame.camera, shot.from_m, shot.at_m, ring_view_deg);
+      if (auto drawn = s.draw(); !drawn) return drawn;
+      ShapeStore shapes;
+      const auto placed = place_catchers(shapes, s.frame, 2 * width, 2 * height, 1.0f, 0.01f, 0.0f, 1, 1);
+      if (placed.empty()) return failure("the chart of splatter sees nothing");
+      CatcherGpu gpu = placed[0].gpu;
+      gpu.shells.z *= thrown_sections(s.frame.splatter->mist);
+      truth.push_back(halved(draw_rings(s.frame, gpu, s.frame.lights[0], 2 * width, 2 * height, s.read_distances(),
+                                        s.read_normals(), slot_s),
+                             width, height));
+      for (const double l : truth.back()) off += l * l, true_sum += l;
+    }
+  for (const RingSetting& setting : ring_settings) {
+    auto own = set_stage(run.software, model, width, height, 50.0f);
+    if (!own) return tl::unexpected(own.error());
+    SplatterStage& s = **own;
+    s.shells = setting.shells;
+    s.marks[0].published = setting.published;
+    s.frame.techniques.set(Effect::halos, HaloRung::none);
+    s.frame.techniques.set(Effect::splatter, SplatterRung::shells);
+    double error = 0.0, sum = 0.0;
+    std::vector<double> times;
+    std::size_t at = 0;
+    for (const Shot& shot : ring_shots) {
+      look(s.frame.camera, shot.from_m, shot.at_m, ring_view_deg);
+      for (const double when : ring_moments_s) {
+        s.frame.time_s = when;
+        if (auto drawn = s.draw(); !drawn) return drawn;
+        const std::vector<float> light = s.read_light();
+        const std::vector<double>& right = truth[at++];
+        for (std::size_t k = 0; k < right.size(); ++k) {
+          error += std::pow(double(light[4 * k]) - right[k], 2);
+          sum += light[4 * k];
+        }
+      }
+      auto some = s.time("splatter", run.software ? 8 : 60);
+      if (!some) return tl::unexpected(some.error());
+      times.insert(times.end(), some->begin(), some->end());
+    }
+    chart.points.push_back({"shells",
+                            setting.label,
+                            quantile(times, 0.5),
+                            quantile(times, 0.05),
+                            quantile(times, 0.95),
+                            std::sqrt(error / off),
+                            sum / true_sum - 1.0,
+                            true,
+                            {}});
+  }
+  return write_chart(run.folder, chart);
+}
+
 }  // namespace
 
 Result<void> chart_halos(const ChartRun& run) {
+  if (auto rings = chart_splatter(run); !rings) return rings;
   const int width = run.software ? 160 : 320, height = run.software ? 90 : 180;
   const int droplets = run.software ? 60000 : 400000;
   Chart chart;

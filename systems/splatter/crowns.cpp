@@ -26,6 +26,19 @@ double crown_rim(double age) {
   return SPLATTER_HEIGHT * (x < 0.125 ? std::sin(0.5 * pi * x / 0.125) : std::pow(1.0 - (x - 0.125) / 0.875, 0.7));
 }
 
+double crown_sheet(double share, double z, double radius, double blur) {
+  const double t = share * SPLATTER_LIFE, rim = crown_rim(t);
+  const double width = 0.28 + 0.25 * share;  // the ring blurs as it breaks into beads
+  const double there =
+      std::clamp((rim - z) / blur + 0.5, 0.0, 1.0) * (1.0 + 1.5 * std::exp(-std::abs(rim - z) / 0.3));
+  const double d = (radius - crown_radius(t, z)) / width;
+  return there * std::exp(-d * d);
+}
+
+double crown_left(double share) {
+  return 1.0 - std::clamp((share - 0.7) / 0.3, 0.0, 1.0);
+}
+
 std::vector<float> make_crowns() {
   std::vector<float> table(std::size_t{SPLATTER_SHELLS} * SPLATTER_AGES * SPLATTER_RADII, 0.0f);
   const auto at = [](int layer, int age, int radius) {
@@ -37,22 +50,17 @@ std::vector<float> make_crowns() {
   std::vector<double> now(std::size_t{SPLATTER_SHELLS} * SPLATTER_RADII);
   for (int age = 1; age < SPLATTER_AGES; ++age) {
     for (int sub = 0; sub < substeps; ++sub) {
-      const double share = (age - 1 + (sub + 0.5) / substeps) / (SPLATTER_AGES - 1), t = share * SPLATTER_LIFE;
-      const double rim = crown_rim(t), width = 0.28 + 0.25 * share;  // the ring blurs as it breaks into beads
+      const double share = (age - 1 + (sub + 0.5) / substeps) / (SPLATTER_AGES - 1);
       double sum = 0.0;
       for (int layer = 0; layer < SPLATTER_SHELLS; ++layer) {
-        const double z = (layer + 0.5) * layer_d, middle = crown_radius(t, z);
-        const double there =
-            std::clamp((rim - z) / layer_d + 0.5, 0.0, 1.0) * (1.0 + 1.5 * std::exp(-std::abs(rim - z) / 0.3));
+        const double z = (layer + 0.5) * layer_d;
         for (int r = 0; r < SPLATTER_RADII; ++r) {
-          const double d = (r * step_r - middle) / width;
-          const double a = there * std::exp(-d * d);
+          const double a = crown_sheet(share, z, r * step_r, layer_d);
           now[std::size_t(layer) * SPLATTER_RADII + std::size_t(r)] = a;
           sum += a * 2.0 * pi * r * step_r * step_r * layer_d;
         }
       }
-      const double fades = 1.0 - std::clamp((share - 0.7) / 0.3, 0.0, 1.0);
-      const double scale = sum > 1e-9 ? 0.25 * pi * fades / sum : 0.0;
+      const double scale = sum > 1e-9 ? 0.25 * pi * crown_left(share) / sum : 0.0;
       for (int layer = 0; layer < SPLATTER_SHELLS; ++layer)
         for (int r = 0; r < SPLATTER_RADII; ++r) {
           float& cell = table[at(layer, age, r)];

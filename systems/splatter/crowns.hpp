@@ -10,6 +10,11 @@ namespace petrichor {
 // Yarin and Weiss 1995 (radius (2/3)^(1/4) (h/D)^(-1/4) sqrt(V t / D)) until it reaches the largest spread, 5.8 D.
 double crown_radius(double age, double height);
 double crown_rim(double age);
+// How thick the sheet stands at a share of its life, height and radius (D), up to a factor that makes its whole right;
+// its rim is as blurred as that many D.
+double crown_sheet(double share_of_life, double height, double radius, double blur);
+// How much of it is left: it fades at the end of its life.
+double crown_left(double share_of_life);
 
 // SPLATTER_SHELLS layers of SPLATTER_AGES rows of SPLATTER_RADII floats: the opacity per diameter of height of a drop's
 // crown in a layer, integrated over its age as a share of its life. Radius in SPLATTER_REACH D, height in

@@ -29,7 +29,11 @@ void main() {
   float depth;
   if (length_m > 0.0) {
     if (behind_m < 0.0) discard;
-    depth = fin_depth * max(1.0 - fin_coordinate.y / length_m, 0.0) * (1.0 + droplets(fin_coordinate) * 2.0);
+    // "The rainfall algorithm from section 3.1 as an animated texture, alpha-blended": its own opacity, layer over layer.
+    float near = textureProj(mist_texture, vec3((fin_coordinate + vec2(0.0, -scrolled.x)) / tile_m, 1.0)).r;
+    float far = textureProj(mist_texture, vec3((fin_coordinate + vec2(0.37 * tile_m, scrolled.y)) / tile_m, 1.31)).g;
+    float alpha = clamp(near * far * fin_depth * max(1.0 - fin_coordinate.y / length_m, 0.0), 0.0, 0.99);
+    depth = -log(1.0 - alpha);
   } else {
     // Soft where the scene cuts it: over the thickness of the mist.
     float soft = clamp(behind_m / catcher.mist.y + 0.5, 0.0, 1.0);

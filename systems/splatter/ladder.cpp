@@ -38,10 +38,11 @@ Ladder splatter_ladder() {
   l.effect = Effect::splatter;
   l.name = "splatter";
   l.meaning = "rings of splatter on marked objects";
-  l.truth = "none yet: rings are not charted against a truth";
-  l.error_measure = "a guess, not measured";
+  l.truth = "the same impacts' crowns, not baked, integrated through four rays a pixel at 40 heights and 24 moments";
+  l.error_measure = "root mean square difference of the rings' picture; no rings at all: 1";
+  // Figures of `petrichor chart halos` (splatter.csv), six shells; software has them on near things alone.
   l.rungs = {{"none", "no splatter", {}, 0.0, 1.0},
-             {"shells", "shells of spreading rings (Tatarchuk and Isidoro 2006)", {"splatter"}, 2.0, 0.3}};
+             {"shells", "shells of spreading rings (Tatarchuk and Isidoro 2006)", {"splatter"}, 4.0, 0.47}};
   l.coverage = [](const Frame& frame) { return 0.5 * strength(frame) * covered(frame, 6.0f, 1.0f); };
   return l;
 }
@@ -55,8 +56,8 @@ Ladder halos_ladder() {
       "the flights, with drag, of the droplets of every class's splashes, seen through each pixel (Monte Carlo, CPU)";
   l.error_measure = "root mean square difference of the mist's picture; no mist at all: 1";
   l.rungs = {{"none", "no mist", {}, 0.0, 1.0},
-             {"layer", "a thin layer of mist in closed form over each object's heights", {"halos"}, 3.0, 0.27},
-             {"fins", "fins along silhouettes (Tatarchuk and Isidoro 2006)", {"halos"}, 2.5, 0.57}};
+             {"layer", "a thin layer of mist in closed form over each object's heights", {"halos"}, 3.0, 0.24},
+             {"fins", "fins along silhouettes (Tatarchuk and Isidoro 2006)", {"halos"}, 2.5, 0.80}};
   l.coverage = [](const Frame& frame) {
     return frame.splatter ? 0.5 * strength(frame) * covered(frame, 30.0f, 4.0f * frame.splatter->mist.height_m) : 0.0;
   };

@@ -8,7 +8,7 @@ layout(local_size_x = 8, local_size_y = 8) in;
 uniform bool use_occlusion;
 
 layout(binding = 0) uniform sampler2D scene_depth;
-layout(binding = 4) uniform sampler2D heights;  // y in object space, cover
+layout(binding = 4) uniform sampler2D heights;  // y in object space, cover by mist
 layout(rgba16f, binding = 0) uniform image2D colour;
 uniform ivec2 first_pixel, last_pixel;
 uniform int steps;

@@ -14,9 +14,10 @@
 namespace petrichor {
 namespace {
 
-constexpr float ring_reach_m = 0.03f, least_ring_px = 2.0f;  // of the widest rings; nearer things splatter
-constexpr std::size_t most_splattering = 6, most_misty = 24;
-constexpr double slot_s = 0.035;  // no crown lives longer
+// Pixels across a mean ring at which it fades in, over four more. On the CPU every pixel of a thing's box pays in full:
+// only near ones do.
+constexpr float least_ring_px = 2.0f, software_ring_px = 5.0f, fade_px = 4.0f;
+constexpr std::size_t most_splattering = 6, software_most_splattering = 2, most_misty = 24;
 constexpr float mist_tile_m = 0.4f;
 constexpr float published_fin_m = 0.12f;
 
@@ -123,10 +124,11 @@ void make_shell_array(KeptShape& kept) {
 }
 
 // As printed: the object's surface anew for each shell, blended onto those below.
-void draw_shells(SplatterState& s, PassContext& context, const PlacedCatcher& p) {
+void draw_shells(SplatterState& s, PassContext& context, const PlacedCatcher& p, float least_px) {
   if (!p.kept->array) make_shell_array(*p.kept);
   const Program& program = prepare(s, context, "shells");
   set_time(program, context.frame, s.software);
+  program.set("fade_px", glm::vec2(least_px, least_px + fade_px));
   blend_over(context, true);
   glEnable(GL_CULL_FACE);
   glFrontFace(glm::determinant(glm::mat3(p.relative_from_object)) < 0.0f ? GL_CW : GL_CCW);
@@ -146,9 +148,12 @@ void draw_splatter(SplatterState& s, PassContext& context) {
   know_device(s);
   const Frame& frame = context.frame;
   const float share = frame.techniques.share(Effect::splatter, SplatterRung::shells);
+  const float asked = context.parameter("least_px");
+  const float least_px = asked > 0.0f ? asked : s.software ? software_ring_px : least_ring_px;
+  const float ring_m = 2.0f * float(SPLATTER_REACH) * 1e-3f * frame.splatter->mist.crown_mm;
   std::vector<PlacedCatcher> placed =
-      place_catchers(s.shapes, frame, context.width, context.height, 2.0f * ring_reach_m, least_ring_px, 0.0f,
-                     s.software ? 3 : 6, most_splattering);
+      place_catchers(s.shapes, frame, context.width, context.height, ring_m, least_px, 0.0f,
+                     s.software ? 2 : 6, s.software ? software_most_splattering : most_splattering);
   if (placed.empty()) return;
   if (!s.crowns.id) {
     const std::vector<float> table = make_crowns();
@@ -161,19 +166,20 @@ void draw_splatter(SplatterState& s, PassContext& context) {
   bind_rain_optics(*s.optics, frame);
   glBindTextureUnit(2, s.crowns.id);
   for (PlacedCatcher& p : placed) {
-    // All that an impact throws up, in cross-sections of its drop; shells are fewer where each pixel pays on the CPU.
+    // All that an impact throws up, in cross-sections of its drop.
     const SplashMist& mist = frame.splatter->mist;
-    p.gpu.shells.z *=
-        share * static_cast<float>(splash_of(mist.crown_mm, mist.crown_speed_mps).droplets * crown_section);
-    if (s.software) p.gpu.shells.x = std::min(p.gpu.shells.x, 3.0f);
+    p.gpu.shells.z *= share * thrown_sections(mist);
+    if (const float shells = context.parameter("shells"); shells > 0.0f)
+      p.gpu.shells.x = std::min(shells, float(SPLATTER_SHELLS));
     if (!(p.gpu.shells.z > 0.0f) || !(p.gpu.crown.x > 0.0f)) continue;
     bind_block(s, p.gpu);
     if (p.catcher->published) {
-      draw_shells(s, context, p);
+      draw_shells(s, context, p, least_px);
       continue;
     }
     const Program& program = prepare(s, context, "splatter");
     set_time(program, frame, s.software);
+    program.set("fade_px", glm::vec2(least_px, least_px + fade_px));
     context.bind_texture(1, "normal");
     context.bind_image(0, "colour", GL_READ_WRITE);
     dispatch(program, p);
@@ -239,8 +245,9 @@ void draw_layer(SplatterState& s, PassContext& context, const std::vector<Placed
     KeptShape& kept = *p.kept;
     if (!kept.heights.id) {
       kept.heights = make_texture_2d(catcher_cells, catcher_cells, GL_RG32F);
-      glTextureSubImage2D(kept.heights.id, 0, 0, 0, catcher_cells, catcher_cells, GL_RG, GL_FLOAT,
-                          kept.shape.heights.data());
+      std::vector<glm::vec2> cells;
+      for (const glm::vec3& cell : kept.shape.heights) cells.emplace_back(cell.x, cell.z);
+      glTextureSubImage2D(kept.heights.id, 0, 0, 0, catcher_cells, catcher_cells, GL_RG, GL_FLOAT, cells.data());
     }
     bind_block(s, p.gpu);
     const Program& program = prepare(s, context, "layer");
@@ -298,6 +305,7 @@ std::vector<PassOffer> splatter_passes(const DropPainting& painting) {
                     {"normal", SlotAccess::read},
                     {"occlusion_map", SlotAccess::read, true},
                     {"environment", SlotAccess::read, true}};
+  splatter.parameters = {{"shells", 0.0}, {"least_px", 0.0}};
   splatter.shaders = both("splatter", {folder + "splatter.comp.glsl"});
   splatter.shaders.merge(both("shells", {folder + "shells.vert.glsl", folder + "shells.frag.glsl"}));
   splatter.wanted = [](const Frame& frame) {

@@ -5,12 +5,15 @@
 
 #include "systems/frame_gpu.hpp"
 #include "systems/frustum.hpp"
+#include "systems/splatter/mist.hpp"
 
 namespace petrichor {
 namespace {
 
 constexpr float outline_width = 0.12f;     // cosine over which a fin comes and goes
-constexpr float published_opacity = 0.2f;  // an artist's, and 12 cm of fin
+constexpr float most_gathered = 4.0f;
+// A ray that goes below the object's own surface within this past an edge shows that surface: no outline, but a seam.
+constexpr float seam_m = 0.35f;
 
 // The lamps that light droplets there most.
 void choose_lamps(const std::vector<LightGpu>& lights, const glm::vec3& middle, float radius, int most,
@@ -136,6 +139,10 @@ std::vector<PlacedCatcher> place_catchers(ShapeStore& store, const Frame& frame,
   return placed;
 }
 
+float thrown_sections(const SplashMist& mist) {
+  return static_cast<float>(splash_of(mist.crown_mm, mist.crown_speed_mps).droplets * crown_section);
+}
+
 float outline_share(float cosine_a, float cosine_b, float width) {
   const auto towards = [&](float c) {
     if (width <= 0.0f) return c > 0.0f ? 1.0f : 0.0f;
@@ -156,13 +163,26 @@ void append_fins(const PlacedCatcher& p, const Frame&, int steps, std::vector<Fi
   const glm::vec3 eye(p.gpu.local_from_relative[3]);  // local
   const float width = p.catcher->published ? 0.0f : outline_width;
   const auto depth_at = [&](const glm::vec3& relative, const glm::vec3& normal) {
-    if (p.catcher->published) return published_opacity * p.catcher->halo;
+    if (p.catcher->published) return p.catcher->halo;  // the texture's own opacity
     if (p.gpu.high.w == 0.0f) return 0.0f;
     // Just over the surface, so that the ray does not end in it.
     const glm::vec3 over = relative + 0.1f * p.gpu.mist.y * normal;
     const glm::vec3 way = glm::mat3(p.gpu.local_from_relative) * glm::normalize(over);
     return layer_depth(scaled, eye, way, glm::length(over) + 12.0f, p.gpu.mist.x, p.gpu.mist.y, steps);
   };
+  const auto clear = [&](const glm::vec3& relative, const glm::vec3& normal) {
+    const glm::vec3 over = relative + p.gpu.mist.y * normal;
+    const glm::vec3 way = glm::mat3(p.gpu.local_from_relative) * glm::normalize(over);
+    float lowest = 1.0f;
+    for (int i = 1; i <= 9; ++i) {
+      const glm::vec3 at = eye + way * (glm::length(over) + seam_m * static_cast<float>(i) / 9.0f);
+      const glm::vec3 surface = surface_at(scaled, at.x, at.z);
+      if (surface.y > 0.5f) lowest = std::min(lowest, at.y - surface.x);
+    }
+    return glm::smoothstep(-0.05f, -0.01f, lowest);
+  };
+  const std::size_t first_fin = fins.size();
+  double drawn = 0.0;
   for (const CatcherEdge& e : shape.edges) {
     const glm::vec3 a = p.relative_from_object * glm::vec4(shape.positions[e.a], 1.0f);
     const glm::vec3 b = p.relative_from_object * glm::vec4(shape.positions[e.b], 1.0f);
@@ -170,11 +190,15 @@ void append_fins(const PlacedCatcher& p, const Frame&, int steps, std::vector<Fi
     const float away = glm::length(to_eye);
     if (!(away > 1e-4f)) continue;
     const glm::vec3 face_a = glm::normalize(turn * e.face_a), face_b = glm::normalize(turn * e.face_b);
-    const float share = outline_share(glm::dot(face_a, to_eye) / away, glm::dot(face_b, to_eye) / away, width);
+    float share = outline_share(glm::dot(face_a, to_eye) / away, glm::dot(face_b, to_eye) / away, width);
     if (share < 1e-3f) continue;
     const glm::vec3 normal_a = glm::normalize(turn * shape.normals[e.a]),
                     normal_b = glm::normalize(turn * shape.normals[e.b]);
-    if (!p.catcher->published && std::max(normal_a.y, normal_b.y) < 0.05f) continue;
+    if (!p.catcher->published) {
+      if (std::max(normal_a.y, normal_b.y) < 0.05f) continue;
+      if (p.gpu.high.w != 0.0f) share *= clear(0.5f * (a + b), glm::normalize(normal_a + normal_b));
+      if (share < 1e-3f) continue;
+    }
     const glm::vec3 along = glm::abs((shape.positions[e.b] - shape.positions[e.a]) * p.scale);
     const int axis = along.x >= along.y && along.x >= along.z ? 0 : along.y >= along.z ? 1 : 2;
     FinGpu fin;
@@ -185,7 +209,24 @@ void append_fins(const PlacedCatcher& p, const Frame&, int steps, std::vector<Fi
     fin.b_normal = glm::vec4(normal_b, shape.positions[e.b][axis] * p.scale[axis]);
     fin.struck = glm::vec4(face_a.y >= face_b.y ? face_a : face_b, share);
     fins.push_back(fin);
+    // A quad's light: its depth over the solid angle that it takes, heights summed in closed form.
+    const glm::vec3 up = 0.5f * (normal_a + normal_b);
+    drawn += 0.5 * (fin.a_depth.w + fin.b_depth.w) * share * std::abs(glm::dot(glm::cross(b - a, up), to_eye)) *
+             p.gpu.mist.y / (away * away * away);
   }
+  if (p.catcher->published || !(drawn > 0.0)) return;
+  // Fins have no mist within the outline: what stands there is gathered along it, so that the whole is as bright.
+  double whole = 0.0;
+  const double column = double(p.gpu.mist.x) * p.gpu.mist.y;
+  for (const CatcherShape::Patch& patch : shape.upper) {
+    const glm::vec3 to_eye = -glm::vec3(p.relative_from_object * glm::vec4(patch.middle, 1.0f));
+    const float square = std::max(glm::dot(to_eye, to_eye), 0.25f);
+    const float cosine = glm::dot(glm::normalize(turn * patch.normal), to_eye) / std::sqrt(square);
+    whole += column * patch.level_m2 * double(p.scale.x * p.scale.z) *
+             glm::smoothstep(-outline_width, outline_width, cosine) / square;
+  }
+  const auto gathered = static_cast<float>(std::min(whole / drawn, double(most_gathered)));
+  for (std::size_t i = first_fin; i < fins.size(); ++i) fins[i].a_depth.w *= gathered, fins[i].b_depth.w *= gathered;
 }
 
 }  // namespace petrichor

@@ -41,6 +41,11 @@ struct PlacedCatcher {
 std::vector<PlacedCatcher> place_catchers(ShapeStore&, const Frame&, int width, int height, float feature_m,
                                           float least_px, float margin_m, int lamps, std::size_t most);
 
+// Length of the slots of time in which impacts are strewn; no crown lives longer.
+constexpr double slot_s = 0.035;
+// A thing's share of the rings' light: 1 x what its mean impact throws up, in cross-sections of its drop.
+float thrown_sections(const SplashMist&);
+
 // Share of the outline that lies on an edge whose faces look so (cosines to the eye): 1 where the outline is sharp.
 // Over a row of edges from a face that looks here to one that looks away the shares sum to 1 at any width of the
 // change; so a fin gives way to the next instead of popping (width 0: as printed).

@@ -12,6 +12,7 @@ uniform float slot_s;       // its length
 uniform float in_slot_s;    // since it began
 uniform float window_s;     // the exposure
 uniform vec2 shifts[3];      // of the lattice of impacts in each slot, so that its borders are nowhere in particular
+uniform vec2 fade_px;         // across a ring: none is drawn; all of it is
 uniform int slots;           // before now that may still show: 3; 2 without those whose rings end as the shutter opens
 
 // Diameter of an impact's drop: an even share of each of the splashing sizes about the mean; their mean is the crown's.
@@ -32,7 +33,8 @@ float rings(vec3 place, vec3 normal, vec3 slide, float first_m, int shells, floa
   float cell_m = 2.5 * (widest + margin);
   // In the open and to windward, at most.
   float expected = catcher.crown.x / max(max(facing.x, facing.z), facing.y) * cell_m * cell_m * slot_s;
-  float struck = -1.0, sum = 0.0;
+  // Shelter is asked once, when all rings are known.
+  vec3 found = vec3(0.0), marks = vec3(1e9);
   for (int i = 0; i < slots; ++i) {
     uint when = slot - uint(i);
     vec2 at = flat_place / cell_m + shifts[i];
@@ -54,8 +56,6 @@ float rings(vec3 place, vec3 normal, vec3 slide, float first_m, int shells, floa
     vec3 from_middle = axis == 1u ? vec3(away.x, rise, away.y) : axis == 0u ? vec3(rise, away) : vec3(away, rise);
     float most = reach + margin * length(slide);
     if (dot(from_middle, from_middle) > most * most) continue;
-    if (struck < 0.0) struck = struck_here();
-    if (mark >= expected * struck) continue;
     // The mean over the exposure, by the difference of two sums: a ring is blurred as a shutter blurs it.
     vec2 ages = min(vec2(from, to) / life_s, vec2(1.0));
     // Texel centres stand for whole ages and radii: 0 is the first one's, 1 the last one's.
@@ -71,8 +71,11 @@ float rings(vec3 place, vec3 normal, vec3 slide, float first_m, int shells, floa
       float x = half_texel.x + r * inner.x;
       ring += max(textureLod(crowns, vec3(x, y.y, layer), 0.0).r - textureLod(crowns, vec3(x, y.x, layer), 0.0).r, 0.0);
     }
-    sum += ring * life_s / max(window_s, 1e-5) * crossing_m / diameter;
+    found[i] = ring * life_s / max(window_s, 1e-5) * crossing_m / diameter;
+    marks[i] = mark;
   }
+  if (found.x + found.y + found.z <= 0.0) return 0.0;
+  float sum = dot(found, vec3(lessThan(marks, vec3(expected * struck_here()))));
   return sum * catcher.shells.z;
 }
 

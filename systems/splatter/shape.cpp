@@ -44,9 +44,10 @@ void draw_heights(CatcherShape& s, const Face& f) {
       const float wb = ((p.x - pa.x) * (pc.y - pa.y) - (p.y - pa.y) * (pc.x - pa.x)) / area;
       const float wc = ((pb.x - pa.x) * (p.y - pa.y) - (pb.y - pa.y) * (p.x - pa.x)) / area;
       if (wb < -1e-4f || wc < -1e-4f || wb + wc > 1.0001f) continue;
-      glm::vec2& cell = s.heights[static_cast<std::size_t>(z * catcher_cells + x)];
+      glm::vec3& cell = s.heights[static_cast<std::size_t>(z * catcher_cells + x)];
       const float y = a.y + wb * (b.y - a.y) + wc * (c.y - a.y);
-      cell = {cell.y > 0.0f ? std::max(cell.x, y) : y, 1.0f};
+      if (cell.y > 0.0f && cell.x >= y) continue;
+      cell = {y, 1.0f, thrown_up(f.normal.y)};
     }
 }
 
@@ -147,7 +148,7 @@ CatcherShape make_shape(const Mesh& mesh) {
   s.low_m = s.high_m = s.positions.front();
   for (const glm::vec3& p : s.positions) s.low_m = glm::min(s.low_m, p), s.high_m = glm::max(s.high_m, p);
   s.normals.assign(s.positions.size(), glm::vec3(0.0f));
-  s.heights.assign(std::size_t{catcher_cells} * catcher_cells, glm::vec2(0.0f));
+  s.heights.assign(std::size_t{catcher_cells} * catcher_cells, glm::vec3(0.0f));
   for (const Face& f : faces) {
     for (std::size_t k = 0; k < 3;
          ++k) {  // weighed by the angle there, so that a face's cut into triangles is the same
@@ -162,14 +163,21 @@ CatcherShape make_shape(const Mesh& mesh) {
   for (glm::vec3& n : s.normals) n = glm::length(n) > 1e-6f ? glm::normalize(n) : glm::vec3(0.0f, 1.0f, 0.0f);
   find_edges(s, faces);
   spread_heights(s);
+  for (const Face& f : faces) {
+    const glm::vec3 &a = s.positions[f.corners[0]], &b = s.positions[f.corners[1]], &c = s.positions[f.corners[2]];
+    const glm::vec3 middle = (a + b + c) / 3.0f;
+    const float level = 0.5f * glm::length(glm::cross(b - a, c - a)) * f.normal.y * thrown_up(f.normal.y);
+    if (level > 0.0f && surface_at({&s, glm::vec3(1.0f)}, middle.x, middle.z).x < middle.y + 0.03f)
+      s.upper.push_back({middle, f.normal, level});
+  }
   return s;
 }
 
-glm::vec2 surface_at(const ScaledShape& scaled, float x_m, float z_m) {
+glm::vec3 surface_at(const ScaledShape& scaled, float x_m, float z_m) {
   const CatcherShape& s = *scaled.shape;
   const glm::vec2 at = cell_of(s, {x_m / scaled.scale.x, 0.0f, z_m / scaled.scale.z}) - 0.5f;
   const glm::vec2 low = glm::floor(at), t = at - low;
-  glm::vec2 sum(0.0f);
+  glm::vec3 sum(0.0f);
   for (int j = 0; j < 2; ++j)
     for (int i = 0; i < 2; ++i) {
       const int x = std::clamp(int(low.x) + i, 0, catcher_cells - 1),
@@ -177,7 +185,7 @@ glm::vec2 surface_at(const ScaledShape& scaled, float x_m, float z_m) {
       sum += s.heights[static_cast<std::size_t>(z * catcher_cells + x)] *
              ((i ? t.x : 1.0f - t.x) * (j ? t.y : 1.0f - t.y));
     }
-  return {sum.x * scaled.scale.y, sum.y};
+  return {sum.x * scaled.scale.y, sum.y, sum.z};
 }
 
 float layer_depth(const ScaledShape& scaled, const glm::vec3& eye_m, const glm::vec3& way, float reach_m,
@@ -197,7 +205,7 @@ float layer_depth(const ScaledShape& scaled, const glm::vec3& eye_m, const glm::
   float depth = 0.0f, last_height = 0.0f, last_cover = 0.0f;
   for (int i = 0; i <= steps; ++i) {
     const glm::vec3 p = eye_m + way * (enter + ds * static_cast<float>(i));
-    const glm::vec2 surface = surface_at(scaled, p.x, p.z);
+    const glm::vec3 surface = surface_at(scaled, p.x, p.z);
     const float height = (p.y - surface.x) / height_m;  // in units of the layer's
     if (i > 0) {
       // Of exp(-h) with h linear; below the surface there is none.
@@ -210,11 +218,11 @@ float layer_depth(const ScaledShape& scaled, const glm::vec3& eye_m, const glm::
         mean *= height / (height - last_height);
       else if (last_height < 0.0f && height < 0.0f)
         mean = 0.0f;
-      depth += mean * 0.5f * (last_cover + surface.y) * ds;
+      depth += mean * 0.5f * (last_cover + surface.z) * ds;
     }
     if (i > 0 && height * height_m < -0.03f) break;  // well inside
     last_height = height;
-    last_cover = surface.y;
+    last_cover = surface.z;
   }
   return depth * extinction_per_m;
 }

@@ -13,7 +13,7 @@ void main() {
   if (shell_struck <= 0.0) discard;
   vec3 normal = normalize(shell_normal);
   float ring_px = 2.0 * float(SPLATTER_REACH) * catcher.crown.y * frame.lens.z / length(shell_place);
-  float near = smoothstep(2.0, 6.0, ring_px) * catcher.shells.w;
+  float near = smoothstep(fade_px.x, fade_px.y, ring_px) * catcher.shells.w;
   float depth = rings(local_place(shell_place), local_way(normal), vec3(0.0), height_m, 1, thickness_m, thickness_m);
   float opacity = 1.0 - exp(-depth * near);
   if (opacity <= 0.0) discard;

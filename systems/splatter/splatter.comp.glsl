@@ -38,7 +38,7 @@ void main() {
   float facing = dot(world_normal, view);
   // Thinner than a pixel a ring is only haze, which is less than the eye sees: it fades out.
   float ring_px = 2.0 * float(SPLATTER_REACH) * catcher.crown.y * frame.lens.z / distance_m;
-  float near = smoothstep(2.0, 6.0, ring_px) * catcher.shells.w;
+  float near = smoothstep(fade_px.x, fade_px.y, ring_px) * catcher.shells.w;
   if (facing <= 0.02 || near <= 0.0) return;
   own_place = place;
   own_normal = world_normal;

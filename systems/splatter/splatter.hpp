@@ -15,7 +15,8 @@
 namespace petrichor {
 
 // Passes splatter and halos. Both modify colour, behind the scene's depth; without marked things, or rain, neither
-// runs. halos: parameter steps, of the layer's closed form along a ray; 0: by the device.
+// runs. halos: parameter steps, of the layer's closed form along a ray; splatter: parameters
+// shells and least_px, across a ring that is drawn; 0: by the device.
 std::vector<PassOffer> splatter_passes(const DropPainting&);
 // frame.splatter: instances below a RainCatcher. After frame.instances and frame.rain.
 void extract_splatter(const Registry&, const std::vector<std::shared_ptr<const Model>>&, Frame&);

@@ -120,6 +120,7 @@ Result<std::unique_ptr<SplatterStage>> SplatterStage::make(bool software_gl, std
     clear_texture(context.texture("colour"),
                   {self->background_cd_m2.x, self->background_cd_m2.y, self->background_cd_m2.z, 1.0f});
     self->depth_ = context.texture("depth").id;
+    self->normal_ = context.texture("normal").id;
     static constexpr std::array<std::string_view, 1> colours{"normal"};
     context.bind_framebuffer(colours, "depth");
     const float zero[4] = {0, 0, 0, 0};
@@ -180,11 +181,14 @@ Result<void> SplatterStage::draw() {
   splatter->catchers = marks;
   if (frame.rain) splatter->mist = splash_mist(*frame.rain);
   frame.splatter = frame.rain && !marks.empty() ? std::shared_ptr<const FrameSplatter>(splatter) : nullptr;
-  if (loaded_steps_ != steps) {
-    for (nlohmann::json& pass : table_["passes"])
+  if (loaded_steps_ != steps || loaded_shells_ != shells) {
+    for (nlohmann::json& pass : table_["passes"]) {
+      if (pass["pass"] == "splatter") pass["parameters"] = {{"shells", shells}, {"least_px", 2.0}};
       if (pass["pass"] == "halos") pass["parameters"] = {{"steps", steps}, {"least_px", 0.01}};  // whole, however far
+    }
     if (auto loaded = graph_->load_table(table_, "the stage of splatter"); !loaded) return loaded;
     loaded_steps_ = steps;
+    loaded_shells_ = shells;
   }
   finish_frame(frame);
   gpu_.upload(frame);
@@ -215,6 +219,23 @@ std::vector<float> SplatterStage::read_distances() const {
                     depth.data());
   for (float& d : depth) d = d > 0.0f ? frame.camera.near_m / d : INFINITY;
   return depth;
+}
+
+std::vector<glm::vec3> SplatterStage::read_normals() const {
+  std::vector<glm::vec4> packed(std::size_t(output_->width) * output_->height);
+  glMemoryBarrier(GL_TEXTURE_UPDATE_BARRIER_BIT);
+  glGetTextureImage(normal_, 0, GL_RGBA, GL_FLOAT, static_cast<GLsizei>(packed.size() * sizeof(glm::vec4)),
+                    packed.data());
+  std::vector<glm::vec3> normals;
+  for (const glm::vec4& p : packed) {  // octahedral
+    const glm::vec2 at = glm::vec2(p) * 2.0f - 1.0f;
+    glm::vec3 n(at, 1.0f - std::abs(at.x) - std::abs(at.y));
+    const float t = std::max(-n.z, 0.0f);
+    n.x += n.x >= 0.0f ? -t : t;
+    n.y += n.y >= 0.0f ? -t : t;
+    normals.push_back(glm::normalize(n));
+  }
+  return normals;
 }
 
 std::vector<float> SplatterStage::read_light() const {

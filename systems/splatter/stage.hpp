@@ -40,12 +40,14 @@ class SplatterStage {
   std::vector<float> read_light() const;  // rgba, cd/m2, row 0 at the bottom
   // Axial metres of what stands in each pixel; infinite where there is nothing.
   std::vector<float> read_distances() const;
+  std::vector<glm::vec3> read_normals() const;  // world, of those pixels
   std::vector<PassReport> report() const { return graph_->report(); }
 
   Frame frame;
   std::vector<Catcher> marks;  // as add() made them: change their settings
   glm::vec3 background_cd_m2{0.0f};
-  int steps = 0;  // of the layer; 0: by the device. Before the first draw()
+  int steps = 0;   // of the layer; 0: by the device
+  int shells = 0;  // of splatter; 0: as the marks say, or fewer by the device
 
  private:
   explicit SplatterStage(bool software_gl) : timer_(software_gl) {}
@@ -56,9 +58,9 @@ class SplatterStage {
   GpuScene scene_;
   std::vector<std::shared_ptr<const Model>> models_;
   const Texture* output_ = nullptr;
-  GLuint depth_ = 0;
+  GLuint depth_ = 0, normal_ = 0;
   nlohmann::json table_;
-  int loaded_steps_ = -1;
+  int loaded_steps_ = -1, loaded_shells_ = -1;
 };
 
 void look(FrameCamera&, const glm::vec3& from_m, const glm::vec3& at_m, float fov_deg);

@@ -88,7 +88,7 @@ void fly_mist(const CatcherShape& shape, const FrameRain& rain, const FrameLight
           const bool inside =
               p.x > shape.low_m.x && p.x < shape.high_m.x && p.z > shape.low_m.z && p.z < shape.high_m.z;
           if (inside && velocity.y < 0.0) {
-            const glm::vec2 below = surface_at(scaled, float(p.x), float(p.z));
+            const glm::vec3 below = surface_at(scaled, float(p.x), float(p.z));
             if (below.y > 0.5f && p.y < below.x) return false;
           }
           const glm::dvec3 from_lamp = p - glm::dvec3(lamp.position_m);

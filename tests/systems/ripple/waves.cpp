@@ -43,7 +43,7 @@ double rms(const std::vector<glm::vec4>& slopes) {
 }
 
 TEST_F(RippleWavesGl, FramesDrawnOneByOneEqualAFrameDrawnAlone) {
-  // Past the first swap of epochs at 6 s, and a cut of the camera at 7 s. Every third frame is skipped in one of them.
+  // Past the swaps of epochs, each 2.5 s, and a cut of the camera at 7 s. Every third frame is skipped in one of them.
   RippleStage each, alone;
   ASSERT_TRUE(each.load(64));
   ASSERT_TRUE(alone.load(64));
@@ -55,7 +55,7 @@ TEST_F(RippleWavesGl, FramesDrawnOneByOneEqualAFrameDrawnAlone) {
     stage.look({1.2 * t + cut, 1.6, 2.0 - 0.3 * t}, glm::normalize(glm::vec3(std::sin(t), -0.5f, -1)));
     stage.tick();
   };
-  for (const double until : {3.0, 5.9, 6.05, 7.5}) {
+  for (const double until : {2.4, 2.6, 5.05, 7.5}) {
     while (static_cast<double>(each.ticks()) < until * 120.0) {
       step(each);
       if (each.ticks() % 2 == 0 && each.ticks() % 6 != 0) draw(each);
@@ -83,17 +83,17 @@ TEST_F(RippleWavesGl, SlopesAreOfTheSizeThatTheBalanceSays) {
     const double shared = rms(stage.layer(0)), near = rms(stage.layer(1));
     const double balance = std::sqrt(double(stage.frame().ripples->at(stage.ticks() - 1)->slope_variance));
     std::printf("%2.0f mm/h: rms slope %.4f shared, %.4f near, %.4f by the balance\n", rate, shared, near, balance);
-    // Shared physics 5: 0.02 to 0.10 at 10 mm/h, 0.05 to 0.26 at 50, of rings as they are. The lattice of 128 cells has
-    // wider, lower seeds: twice as wide, half as steep.
+    // Shared physics 5: 0.02 to 0.10 at 10 mm/h, 0.05 to 0.26 at 50, of rings as they are. The lattice has seeds as wide
+    // as theirs; of their slopes Sobel's filter over five cells a wave leaves some three quarters.
     RippleSettings natural;
     natural.seed_cells = 0.0f;
     const double true_slope = std::sqrt(make_ripple_rain(stage.emitter(), natural)->slope_variance_per_s /
                                         (2.0 * stage.ripples().decay_per_s));
     EXPECT_GT(true_slope, rate < 20.0f ? 0.02 : 0.05);
     EXPECT_LT(true_slope, rate < 20.0f ? 0.10 : 0.26);
-    EXPECT_NEAR(shared / balance, 0.5, 0.12);
-    // Seeds of three cells: 17.6 mm wide there, 24 mm here.
-    EXPECT_NEAR(near / shared, 17.6 / 24.0, 0.15);
+    EXPECT_NEAR(shared / balance, 0.75, 0.2);
+    // Seeds of one and a half cells: 8.8 mm wide there, 12 mm here.
+    EXPECT_NEAR(near / shared, 8.8 / 12.0, 0.15);
   }
 }
 
@@ -214,8 +214,7 @@ TEST_F(RippleWavesGl, WadersLeaveAWakeAndStillOnesNone) {
   const glm::vec2 middle = glm::vec2(t.near_centre) * t.near_cell_m;
   const Entity wader = stage.add_wader({0.06f, 6.0f, 0.4f}, {middle.x - 0.2f, 0.1f, middle.y});
   stage.run(0.5);
-  draw(stage);
-  EXPECT_EQ(rms(stage.layer(1)), 0.0);
+  EXPECT_FALSE(stage.frame().ripples);  // it costs nothing until it moves
   for (int i = 0; i < 60; ++i) {
     stage.place(wader, {middle.x - 0.2f + 0.005f * i, 0.1f, middle.y});
     stage.tick();
@@ -227,8 +226,7 @@ TEST_F(RippleWavesGl, WadersLeaveAWakeAndStillOnesNone) {
     stage.place(wader, {middle.x + 0.1f - 0.0005f * i, -2.0f, middle.y});
     stage.tick();
   }
-  draw(stage);
-  EXPECT_LT(rms(stage.layer(1)), 1e-4);
+  EXPECT_FALSE(stage.frame().ripples);
 }
 
 TEST_F(RippleWavesGl, NothingRunsWithoutWaterOrRungOrRings) {

@@ -136,7 +136,7 @@ TEST(Shape, ABoxHasTheFourEdgesThatRainStrikes) {
   EXPECT_EQ(s.positions.size(), 8u);
   EXPECT_EQ(s.edges.size(), 4u);
   for (const CatcherEdge& e : s.edges) EXPECT_FLOAT_EQ(s.positions[e.a].y, 1.0f);
-  const glm::vec2 top = surface_at({&s, glm::vec3(1.0f)}, 0.3f, -0.7f);
+  const glm::vec3 top = surface_at({&s, glm::vec3(1.0f)}, 0.3f, -0.7f);
   EXPECT_NEAR(top.x, 1.0f, 1e-5f);
   EXPECT_EQ(top.y, 1.0f);
 }
