@@ -26,7 +26,8 @@ const std::vector<Setting>& settings() {
       {ReflectionRung::screen_space, "screen_space", "1 ray", {}},
       {ReflectionRung::screen_space, "screen_space", "2 rays", {{"rays", 2}}},
       {ReflectionRung::screen_space, "screen_space", "4 rays", {{"rays", 4}}},
-      {ReflectionRung::screen_space, "screen_space", "4 rays, 48 steps", {{"rays", 4}, {"steps", 48}}}};
+      {ReflectionRung::screen_space, "screen_space", "4 rays, 48 steps", {{"rays", 4}, {"steps", 48}}},
+      {ReflectionRung::planar, "planar", "", {}}};
   return all;
 }
 
@@ -127,7 +128,6 @@ Result<std::vector<BenchRow>> bench_reflections(const MakePasses& passes, int wi
   auto stage = ReflectionStage::make(passes, night_street(0.22f), width, height);
   if (!stage) return tl::unexpected(stage.error());
   for (std::size_t rung = 1; rung < ladder.rungs.size(); ++rung) {
-    if (static_cast<ReflectionRung>(rung) == ReflectionRung::planar) continue;  // as screen_space where nothing is flat
     (*stage)->use(static_cast<ReflectionRung>(rung));
     std::vector<double> ms;
     for (int i = 0; i < frames + 4; ++i) {

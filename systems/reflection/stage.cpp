@@ -4,6 +4,8 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <nlohmann/json.hpp>
 
+#include "systems/mirror_frame.hpp"
+
 namespace petrichor {
 
 void add_lit_box(Model& model, glm::vec3 low, glm::vec3 high, const StageLook& look, int only) {
@@ -102,6 +104,7 @@ Result<std::unique_ptr<ReflectionStage>> ReflectionStage::make(const MakePasses&
       "shadow_atlas": {"format": "rgba32f", "width": 2048, "height": 2048, "persistent": true},
       "environment": {"format": "rgba16f", "width": 448, "height": 65},
       "light_lists": {"format": "rgba32ui", "scale": 0.125}, "colour": {"format": "rgba16f"},
+      "mirrors": {"format": "rgba16f", "scale": 0.5, "layers": 2, "mips": 6},
       "reflections": {"format": "rgba16f", "scale": 0.5}},
     "passes": [
       {"pass": "gbuffer", "depth": "depth", "albedo": "albedo", "normal": "normal", "emissive": "emissive"},
@@ -112,11 +115,13 @@ Result<std::unique_ptr<ReflectionStage>> ReflectionStage::make(const MakePasses&
       {"pass": "shade", "depth": "depth", "albedo": "albedo", "normal": "normal", "emissive": "emissive",
        "light_lists": "light_lists", "shadow_atlas": "shadow_atlas", "environment": "environment", "colour": "colour",
        "highlights": "highlights"},
+      {"pass": "mirrors", "light_lists": "light_lists", "shadow_atlas": "shadow_atlas", "environment": "environment",
+       "mirrors": "mirrors"},
       {"pass": "reflections", "depth": "depth", "albedo": "albedo", "normal": "normal", "emissive": "emissive",
        "environment": "environment", "highlights": "highlights", "colour": "colour",
        "reflections": "reflections"},
       {"pass": "reflections_over", "colour": "colour", "depth": "depth", "albedo": "albedo", "normal": "normal",
-       "emissive": "emissive", "environment": "environment", "reflections": "reflections"}],
+       "emissive": "emissive", "environment": "environment", "mirrors": "mirrors", "reflections": "reflections"}],
     "output": "colour"})json");
   for (auto& pass : table["passes"])
     for (const auto& [name, value] : parameters)
@@ -159,6 +164,14 @@ void ReflectionStage::use(ReflectionRung rung) {
 Result<const Texture*> ReflectionStage::execute(FrameTimer& timer) {
   frame.reflectors.reset();
   extract_reflectors(finder_, models_, frame);
+  frame.mirrors.reset();
+  if (frame.techniques.share(Effect::reflections, ReflectionRung::planar) > 0.0f) {  // the ground is level, at 0
+    auto mirrors = std::make_shared<FrameMirrors>();
+    mirrors->water = FrameMirrors::Plane{};
+    mirrors->water->eye_m = static_cast<float>(frame.camera.position_m.y);
+    mirrors->water->coverage = 0.35f;
+    frame.mirrors = std::move(mirrors);
+  }
   finish_frame(frame);
   gpu_.upload(frame);
   return graph_->execute(frame, frame.width, frame.height, timer);
@@ -185,7 +198,7 @@ Result<double> ReflectionStage::time(bool software) {
   double sum = 0.0;
   glFinish();
   for (const Timing& t : timer.collect())
-    if (t.name == "reflections" || t.name == "reflections_over") sum += t.milliseconds;
+    if (t.name == "mirrors" || t.name == "reflections" || t.name == "reflections_over") sum += t.milliseconds;
   return sum;
 }
 

@@ -49,7 +49,7 @@ class ReflectionStage {
   void use(ReflectionRung);
   // Linear light, cd/m2, rows from the bottom.
   Result<std::vector<glm::vec4>> draw();
-  // Milliseconds of passes reflections and reflections_over, by GPU timers, or by glFinish on software OpenGL.
+  // Milliseconds of passes mirrors, reflections and reflections_over, by GPU timers, or by glFinish on software OpenGL.
   Result<double> time(bool software);
   std::vector<PassReport> report() const { return graph_->report(); }
 
