@@ -32,6 +32,21 @@ bool counts(const Ladder& ladder, const std::array<double, effect_count>& covera
   return ladder.directed && e != resolution_effect && coverage[e] > 0.0;
 }
 
+// Of a pass that several ladders' rungs name (films and puddles share one), the part that is one's own: by their charts.
+double part_of_pass(const std::vector<Ladder>& ladders, const Techniques& techniques,
+                    const std::array<double, effect_count>& coverage, std::string_view pass, double own_chart_ms) {
+  double all_ms = 0.0;
+  int asking = 0;
+  for (const Ladder& ladder : ladders) {
+    if (!counts(ladder, coverage)) continue;
+    const Rung& rung = ladder.rungs[techniques[ladder.effect].rung];
+    if (std::find(rung.passes.begin(), rung.passes.end(), pass) == rung.passes.end()) continue;
+    all_ms += rung.chart_ms;
+    ++asking;
+  }
+  return asking > 1 && all_ms > 0.0 ? own_chart_ms / all_ms : 1.0;
+}
+
 // Ratio of this machine to the chart's by the whole frame; 0 where it cannot be told.
 double frame_ratio(const DirectorCosts& costs, const Techniques& techniques,
                    const std::array<double, effect_count>& coverage, double level_ms) {
@@ -161,9 +176,11 @@ void learn_passes(DirectorCosts& costs, const Techniques& techniques, const std:
     const auto e = static_cast<std::size_t>(ladder.effect);
     const auto rung = techniques[ladder.effect].rung;
     double ms = 0.0;
-    for (const std::string_view name : ladder.rungs[rung].passes)
+    for (const std::string_view name : ladder.rungs[rung].passes) {
+      const double part = part_of_pass(costs.ladders, techniques, coverage, name, ladder.rungs[rung].chart_ms);
       for (const PassTime& pass : passes)
-        if (pass.name == name) ms += pass.ms;
+        if (pass.name == name) ms += part * pass.ms;
+    }
     add(costs.measured[e][rung][size], ms);
   }
 }
