@@ -38,7 +38,6 @@ const std::vector<Setting>& settings() {
       {RippleRung::verlet5, "verlet5", "published seeds, 16 bits", 256, 3, 0, true, false, false},
       {RippleRung::verlet9, "verlet9", "64^2", 64},
       {RippleRung::verlet9, "verlet9", "128^2", 128},
-      {RippleRung::verlet9, "verlet9", "128^2, seed 1 cell", 128, 1},
       {RippleRung::verlet9, "verlet9", "256^2, seed 2.2 cells", 256, 0},
       {RippleRung::verlet9, "verlet9", "256^2", 256},
       {RippleRung::verlet9, "verlet9", "256^2, seed 5 cells", 256, 5},

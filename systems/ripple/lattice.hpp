@@ -23,8 +23,8 @@ struct RippleScheme {
 };
 
 // Least deviation of a seed in cells: what the setting says of 256 cells and more. A coarser lattice is not given wider
-// rings, whose waves would all be too slow, but fewer cells to a ring: at 128 those of 1.5 cells are truer by half than
-// those of 3, which are worse than still water (chart ripples).
+// rings, whose waves would all be too slow, but fewer cells to a ring: at 128, of 3 cells they are worse than still water,
+// of 1.5 better (chart ripples: 1.03, 0.92).
 float seed_cells(const RippleSettings&, int cells);
 
 // The programs of pass `ripples`.
