@@ -15,9 +15,9 @@ Ladder splashes_ladder() {
   l.error_measure = "mean and deviation of blocks of the picture over moments (no splashes at all: 1)";
   const std::vector<std::string_view> passes{"splash_overhead", "splash_list", "splash_draw"};
   l.rungs = {{"none", "no splashes", {}, 0.0, 1.0},
-             {"random", "sprites at random places (as printed)", passes, 4.1, 1.07},
-             {"field", "a splash where each drop of the field lands", passes, 20.0, 0.127},
-             {"secondary", "field, with secondary droplets near the eye", passes, 23.0, 0.123}};
+             {"random", "sprites at random places (as printed)", passes, 2.4, 1.05},
+             {"field", "a splash where each drop of the field lands", passes, 7.5, 0.31},
+             {"secondary", "field, with secondary droplets near the eye", passes, 8.5, 0.285}};
   l.coverage = [](const Frame& frame) {
     const bool rains = frame.rain && frame.rain->rain_mm_per_hour > 0.0f;
     if (!rains && !(frame.drips && !frame.drips->landings.empty())) return 0.0;

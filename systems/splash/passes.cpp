@@ -257,7 +257,8 @@ void draw_splashes(SplashGpuState& gpu, PassContext& context) {
     glTextureSubImage3D(gpu.crown.id, 0, 0, 0, 0, CROWN_SIDE, CROWN_SIDE, gpu.crown.layers, GL_RGBA, GL_UNSIGNED_SHORT,
                         baked.data());
     glGenerateTextureMipmap(gpu.crown.id);
-    glTextureParameteri(gpu.crown.id, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
+    glTextureParameteri(gpu.crown.id, GL_TEXTURE_MIN_FILTER,
+                        gpu.software ? GL_LINEAR_MIPMAP_NEAREST : GL_LINEAR_MIPMAP_LINEAR);
   }
   bind_rain_sums(*gpu.sums, context.width, context.height);
   bind(SPLASH_COMMAND_BINDING, gpu.command);
@@ -307,9 +308,9 @@ std::vector<PassOffer> splash_passes(const DropPainting& painting) {
                 {"normal", SlotAccess::read, true},   {"water", SlotAccess::read, true},
                 {"overhead", SlotAccess::read, true}, {"environment", SlotAccess::read, true}};
   list.parameters = {{"least_radiance", 0.004},
-                     {"software_most", 1000},
+                     {"software_most", 650},
                      {"software_reach", 8},
-                     {"software_secondary_reach", 1.5},
+                     {"software_secondary_reach", 1.2},
                      {"software_least_mm", 1.1}};
   const std::string folder = "systems/splash/";
   for (const char* name : {"tiles", "columns", "drops", "impacts", "random", "landings"})

@@ -19,10 +19,15 @@ uniform float distance_fade;  // as printed: 1 over the distance at which nothin
 vec4 crown_until(vec2 uv, float first_layer, float phase, float lod) {
   if (phase <= 0.0) return vec4(0.0);
   float at = min(phase, 1.0) * float(CROWN_PHASES) - 1.0;  // layer 0 holds the first sixteenth
+#ifdef SOFTWARE
+  at = floor(at + 0.5);  // a sample is dear there
+  return at < 0.0 ? vec4(0.0) : textureLod(crown, vec3(uv, first_layer + at), lod);
+#else
   float below = floor(at), part = at - below;
   vec4 low = below < 0.0 ? vec4(0.0) : textureLod(crown, vec3(uv, first_layer + below), lod);
   if (part <= 0.0) return low;
   return mix(low, textureLod(crown, vec3(uv, first_layer + below + 1.0), lod), part);
+#endif
 }
 
 // Elevations that are baked: 5, 25, 50 and 80 degrees (crown.cpp); between two, one by chance.
