@@ -15,19 +15,22 @@ uniform vec2 edges;  // e_s, e_b
 uniform float clear_share;  // of the opacity that the lightning's bias leaves
 uniform float distance_fade;  // as printed: 1 over the distance at which nothing is left; else 0
 
+bool long_window = false;  // the shutter is open for a good part of the crown's life
 // What the pictures from the start to a phase sum to.
 vec4 crown_until(vec2 uv, float first_layer, float phase, float lod) {
   if (phase <= 0.0) return vec4(0.0);
   float at = min(phase, 1.0) * float(CROWN_PHASES) - 1.0;  // layer 0 holds the first sixteenth
 #ifdef SOFTWARE
-  at = floor(at + 0.5);  // a sample is dear there
-  return at < 0.0 ? vec4(0.0) : textureLod(crown, vec3(uv, first_layer + at), lod);
-#else
+  // A sample is dear there; of short windows (an instant of the truth) the phase must stay exact.
+  if (long_window) {
+    at = floor(at + 0.5);
+    return at < 0.0 ? vec4(0.0) : textureLod(crown, vec3(uv, first_layer + at), lod);
+  }
+#endif
   float below = floor(at), part = at - below;
   vec4 low = below < 0.0 ? vec4(0.0) : textureLod(crown, vec3(uv, first_layer + below), lod);
   if (part <= 0.0) return low;
   return mix(low, textureLod(crown, vec3(uv, first_layer + below + 1.0), lod), part);
-#endif
 }
 
 // Elevations that are baked: 5, 25, 50 and 80 degrees (crown.cpp); between two, one by chance.
@@ -72,6 +75,7 @@ void draw_crown(SplashGpu s, float exposure) {
   float last = min(age / life, 1.0), first = max((age - shown) / life, 0.0);
   if (last <= first) return;
   float per_window = life / shown;
+  long_window = shown > 0.4 * life;
   float view = view_of(-dot(place, s.axis_age.xyz) / away, unit_float(s.bits.x * 0x9e3779b9u));
   float kind = float(CROWN_TAKES) * ((s.bits.y & SPLASH_FILM) != 0u ? 0.0 : 1.0) + floor(own.w * float(CROWN_TAKES));
   float first_layer = (kind * float(CROWN_VIEWS) + view) * float(CROWN_PHASES);
