@@ -145,7 +145,7 @@ std::vector<Schema> make_schemas() {
           {field<&Puddle::size_m>("size_m", "m", {0.01, 1000}, "Extent."),
            field<&Puddle::maximum_depth_mm>("maximum_depth_mm", "mm", {0, 1000}, "Depth at which it overflows."),
            field<&Puddle::area_share>("area_share", "", {0.01, 1}, "Wet area when full, of the rectangle."),
-           field<&Puddle::catchment_ratio>("catchment_ratio", "", {0, 1000}, "Catchment area over puddle area."),
+           field<&Puddle::catchment_ratio>("catchment_ratio", "", {0, 1000}, "Catchment area over puddle area; 0 under a roof."),
            field<&Puddle::shape>("shape", "", any, "How its wet area grows with the depth.", puddle_shapes),
            field<&Puddle::mean_depth_share>("mean_depth_share", "", {0.3333, 0.5}, "Mean depth of a bowl when full."),
            field<&Puddle::by_height>("by_height", "", any, "Depth by the ground's height, not by a material's mask."),

@@ -1,6 +1,5 @@
 #pragma once
-// Where the city holds and sheds water. Marked in the content now; the systems that drip, fill and run
-// come with later work.
+// Where water gathers, runs off, stands and splashes. Each struct says which system reads it.
 #include <cstdint>
 #include <glm/glm.hpp>
 

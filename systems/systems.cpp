@@ -106,7 +106,7 @@ std::vector<SystemEntry<SystemContext>> all_systems() {
        .phase = Phase::simulate,
        .reads = {"emitter", "wind", "ripples", "puddle", "wader", "camera", "world_transform", "time"},
        .writes = {"ripple_history"},
-       .needs = {"emitter"},
+       .needs = {"puddle"},
        .after = {"rainfall", "drips"},
        .run = [](SystemContext& c) { simulate_ripples(c.registry, c.time_s, c.step_s); }},
 
@@ -242,7 +242,7 @@ std::vector<SystemEntry<SystemContext>> all_systems() {
        .phase = Phase::extract,
        .reads = {"emitter", "ripple_history", "frame.camera", "frame.rain", "frame.drips", "frame.puddles"},
        .writes = {"frame.ripples"},
-       .needs = {"emitter"},
+       .needs = {"puddle"},
        .after = {"extract_rainfall", "extract_drips", "extract_puddles"},
        .run = [](SystemContext& c) { extract_ripples(c.registry, *c.frame, c.time_s); }},
       {.name = "extract_reflectors",

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cassert>
 #include <filesystem>
 #include <glm/gtc/type_ptr.hpp>
@@ -10,6 +11,7 @@
 #include <system_error>
 
 #include "engine/core/paths.hpp"
+#include "engine/core/log.hpp"
 #include "engine/gpu/shader_source.hpp"
 
 namespace petrichor {
@@ -78,6 +80,7 @@ void delete_shader(GLuint id) {
 }
 
 Result<GLuint> build(const ShaderKey& key, std::vector<Dependency>& dependencies) {
+  const auto start = std::chrono::steady_clock::now();
   GlId<delete_program> program(glCreateProgram());
   std::vector<GlId<delete_shader>> shaders;
   std::vector<SourceFile> all_files;
@@ -119,6 +122,9 @@ Result<GLuint> build(const ShaderKey& key, std::vector<Dependency>& dependencies
                                key.files.size() == 1 ? map_shader_log(log, all_files) : log));
   }
   for (const auto& shader : shaders) glDetachShader(program, shader);
+  // Drivers take from milliseconds to many seconds over one: whoever waits wants to know for what.
+  log_debug("{} [{}] compiled in {:.2f} s", key.files.back(), fmt::join(key.defines, " "),
+            std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
   glObjectLabel(GL_PROGRAM, program, -1, key.files.back().c_str());
   return program.release();
 }

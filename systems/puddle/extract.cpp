@@ -26,6 +26,7 @@ void extract_puddles(const Registry& registry, Frame& frame) {
   std::vector<std::pair<float, FramePuddles::Puddle>> seen;
   registry.view<const Puddle, const WorldTransform>().each(
       [&](Entity entity, const Puddle& p, const WorldTransform& placed) {
+        if (!(p.maximum_depth_mm > 0.0f)) return;  // nothing can stand here
         // Size is the component's; of the transform only place and turning count.
         glm::mat4 world(1.0f);
         for (int axis = 0; axis < 3; ++axis) {

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "components/weather.hpp"
+#include "systems/first_of.hpp"
 #include "systems/puddle/puddle.hpp"
 #include "systems/puddle/water.hpp"
 
@@ -23,8 +24,8 @@ bool same_start(const Puddle& a, const Puddle& b) {
 }  // namespace
 
 void simulate_puddles(Registry& registry, double time_s, double step_s) {
-  double rain = 0.0;
-  registry.view<const Emitter>().each([&](Entity, const Emitter& e) { rain += double(e.rain_mm_per_hour); });
+  const auto emitter = first_of<Emitter>(registry);
+  const double rain = emitter ? double(emitter->rain_mm_per_hour) : 0.0;
   std::vector<Entity> fresh;
   registry.view<const Puddle>().each([&](Entity entity, const Puddle& p) {
     PuddleWater* water = registry.find<PuddleWater>(entity);

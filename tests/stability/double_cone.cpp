@@ -7,11 +7,11 @@
 
 #include "components/transform.hpp"
 #include "components/view.hpp"
-#include "engine/platform/context.hpp"
 #include "systems/geometry/extract.hpp"
 #include "systems/rainfall/cone/cone.hpp"
 #include "systems/rainfall/extract.hpp"
 #include "systems/rainfall/stage.hpp"
+#include "tests/engine/platform/gl_test.hpp"
 
 namespace petrichor {
 namespace {
@@ -193,19 +193,8 @@ TEST(DoubleCone, AxisPassesThroughEveryDirection) {
   }
 }
 
-class DoubleConePicture : public testing::Test {
+class DoubleConePicture : public test::GlTest {
  protected:
-  static void SetUpTestSuite() {
-    auto made = make_headless_context({.debug = true});
-    if (made) context = std::move(*made);
-  }
-  static void TearDownTestSuite() { context.reset(); }
-  void SetUp() override {
-    if (!context) GTEST_SKIP() << "no OpenGL 4.5";
-    errors = gl_error_count();
-  }
-  void TearDown() override { EXPECT_EQ(context ? gl_error_count() : errors, errors) << last_gl_error(); }
-
   static std::unique_ptr<RainStage> stage(float wall_m, bool fog = true) {
     StageSet set;
     set.present = false;
@@ -217,9 +206,6 @@ class DoubleConePicture : public testing::Test {
     EXPECT_TRUE(made) << (made ? "" : made.error().message);
     return made ? std::move(*made) : nullptr;
   }
-
-  inline static std::unique_ptr<Context> context;
-  int errors = 0;
 };
 
 Frame rain_frame(int width, int height, float mm_per_hour = 60.0f) {

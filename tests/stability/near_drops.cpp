@@ -7,32 +7,21 @@
 #include <string>
 #include <vector>
 
-#include "engine/platform/context.hpp"
 #include "systems/gpu_scene.hpp"
 #include "systems/rainfall/extract.hpp"
 #include "systems/rainfall/near_drops/near_street.hpp"
 #include "systems/rainfall/near_drops/near_truth.hpp"
 #include "systems/rainfall/near_drops/passes.hpp"
 #include "systems/rainfall/stage.hpp"
+#include "tests/engine/platform/gl_test.hpp"
 
 namespace petrichor {
 namespace {
 
 constexpr int width = 160, height = 90;
 
-class NearDropsStability : public testing::Test {
+class NearDropsStability : public test::GlTest {
  protected:
-  static void SetUpTestSuite() {
-    auto made = make_headless_context({.debug = true});
-    if (made) context = std::move(*made);
-  }
-  static void TearDownTestSuite() { context.reset(); }
-  void SetUp() override {
-    if (!context) GTEST_SKIP() << "no OpenGL 4.5";
-    errors = gl_error_count();
-  }
-  void TearDown() override { EXPECT_EQ(context ? gl_error_count() : errors, errors) << last_gl_error(); }
-
   static std::unique_ptr<RainStage> stage(float wall_m = 40.0f, bool hides = false) {
     StageSet set;
     set.present = false;
@@ -59,9 +48,6 @@ class NearDropsStability : public testing::Test {
     f.rain->techniques.set(Effect::rainfall, RainRung::near_drops);
     return f;
   }
-
-  inline static std::unique_ptr<Context> context;
-  int errors = 0;
 };
 
 // Stripes on a wall across the street, 3 m from the eye.

@@ -4,11 +4,11 @@
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 
-#include "engine/platform/context.hpp"
 #include "systems/occlusion/chart.hpp"
 #include "systems/occlusion/stage.hpp"
 #include "systems/occlusion/street.hpp"
 #include "systems/rainfall/extract.hpp"
+#include "tests/engine/platform/gl_test.hpp"
 
 namespace petrichor {
 namespace {
@@ -17,22 +17,17 @@ FrameRain rain_at(const Emitter& emitter, const Wind& wind, double time_s) {
   return make_frame_rain(emitter, start_rain_motion(emitter, wind), {}, 1, 1, time_s);
 }
 
-class OcclusionStability : public testing::Test {
+class OcclusionStability : public test::GlTest {
  protected:
-  static void SetUpTestSuite() {
-    auto made = make_headless_context({.debug = true});
-    if (made) context = std::move(*made);
-  }
-  static void TearDownTestSuite() { context.reset(); }
   void SetUp() override {
-    if (!context) GTEST_SKIP() << "no OpenGL 4.5";
-    errors = gl_error_count();
+    test::GlTest::SetUp();
+    if (IsSkipped()) return;
     emitter.rain_mm_per_hour = 10.0f;
     stage = std::make_unique<OcclusionStage>();
   }
   void TearDown() override {
     stage.reset();
-    EXPECT_EQ(context ? gl_error_count() : errors, errors) << last_gl_error();
+    test::GlTest::TearDown();
   }
   void use(OcclusionRung rung, float wind_mps, bool gusts, std::map<std::string, double> parameters = {}) {
     if (rung == OcclusionRung::jittered) parameters["maps"] = 8;
@@ -67,11 +62,9 @@ class OcclusionStability : public testing::Test {
     return std::sqrt(sum / static_cast<double>(places.size()));
   }
 
-  inline static std::unique_ptr<Context> context;
   std::unique_ptr<OcclusionStage> stage;
   Emitter emitter;
   Wind wind;
-  int errors = 0;
 };
 
 // Chen's map looks straight down ("this method fails in situations where there are winds"): with the wind its error

@@ -4,28 +4,17 @@
 #include <cmath>
 #include <memory>
 
-#include "engine/platform/context.hpp"
 #include "systems/rainfall/extract.hpp"
 #include "systems/rainfall/passes.hpp"
 #include "systems/drops/rain_shared.h"
 #include "systems/rainfall/stage.hpp"
+#include "tests/engine/platform/gl_test.hpp"
 
 namespace petrichor {
 namespace {
 
-class RainStability : public testing::Test {
+class RainStability : public test::GlTest {
  protected:
-  static void SetUpTestSuite() {
-    auto made = make_headless_context({.debug = true});
-    if (made) context = std::move(*made);
-  }
-  static void TearDownTestSuite() { context.reset(); }
-  void SetUp() override {
-    if (!context) GTEST_SKIP() << "no OpenGL 4.5";
-    errors = gl_error_count();
-  }
-  void TearDown() override { EXPECT_EQ(context ? gl_error_count() : errors, errors) << last_gl_error(); }
-
   // A white wall and drops that shine with nothing: the picture is the transmittance.
   static std::unique_ptr<RainStage> stage(float wall_m, int path, float wall_cd_m2 = 1.0f) {
     StageSet set;
@@ -38,9 +27,6 @@ class RainStability : public testing::Test {
     EXPECT_TRUE(made) << (made ? "" : made.error().message);
     return made ? std::move(*made) : nullptr;
   }
-
-  inline static std::unique_ptr<Context> context;
-  int errors = 0;
 };
 
 struct View {

@@ -7,30 +7,19 @@
 #include <memory>
 
 #include "components/weather.hpp"
-#include "engine/platform/context.hpp"
 #include "systems/drops/drop_physics.hpp"
 #include "systems/rainfall/extract.hpp"
 #include "systems/rainfall/passes.hpp"
 #include "systems/rainfall/sprites/passes.hpp"
 #include "systems/rainfall/sprites/sprites.hpp"
 #include "systems/rainfall/stage.hpp"
+#include "tests/engine/platform/gl_test.hpp"
 
 namespace petrichor {
 namespace {
 
-class StreakSpriteStability : public testing::Test {
+class StreakSpriteStability : public test::GlTest {
  protected:
-  static void SetUpTestSuite() {
-    auto made = make_headless_context({.debug = true});
-    if (made) context = std::move(*made);
-  }
-  static void TearDownTestSuite() { context.reset(); }
-  void SetUp() override {
-    if (!context) GTEST_SKIP() << "no OpenGL 4.5";
-    errors = gl_error_count();
-  }
-  void TearDown() override { EXPECT_EQ(context ? gl_error_count() : errors, errors) << last_gl_error(); }
-
   static std::unique_ptr<RainStage> stage(float wall_m) {
     StageSet set;
     set.present = false;
@@ -41,9 +30,6 @@ class StreakSpriteStability : public testing::Test {
     EXPECT_TRUE(made) << (made ? "" : made.error().message);
     return made ? std::move(*made) : nullptr;
   }
-
-  inline static std::unique_ptr<Context> context;
-  int errors = 0;
 };
 
 struct Shot {

@@ -10,34 +10,46 @@
 #include <filesystem>
 #include <fstream>
 #include <memory>
-#include <stdexcept>
 #include <string>
 
 #include "engine/platform/context.hpp"
 
 namespace petrichor::test {
 
-class GlTest : public ::testing::Test {
+// Null where there is no OpenGL 4.5.
+inline Context* shared_gl_context() {
+  static const std::unique_ptr<Context> shared = [] {
+    auto made = make_headless_context({.debug = true});
+    return made ? *std::move(made) : nullptr;
+  }();
+  return shared.get();
+}
+
+// Base: testing::Test, or TestWithParam. Skips where there is no OpenGL.
+template <class Base>
+class OnGl : public Base {
  protected:
-  static Context& context() {
-    static const std::unique_ptr<Context> shared = [] {
-      auto made = make_headless_context({.debug = true});
-      if (!made) throw std::runtime_error(made.error().message);
-      return *std::move(made);
-    }();
-    return *shared;
-  }
   void SetUp() override {
-    context().make_current();
+    context = shared_gl_context();
+    if (!context) GTEST_SKIP() << "no OpenGL 4.5";
+    context->make_current();
     errors_before_ = gl_error_count();
   }
-  void TearDown() override { EXPECT_EQ(gl_error_count(), errors_before_) << last_gl_error(); }
+  void TearDown() override {
+    if (context) {
+      EXPECT_EQ(gl_error_count(), errors_before_) << last_gl_error();
+    }
+  }
   // For a test that makes errors on purpose.
   void expected_errors(int count) { errors_before_ += count; }
+
+  inline static Context* context = nullptr;
 
  private:
   int errors_before_ = 0;
 };
+
+using GlTest = OnGl<::testing::Test>;
 
 // A folder that is the first data root while it lives.
 class DataFolder {

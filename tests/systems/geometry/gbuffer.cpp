@@ -1,6 +1,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "systems/geometry/passes.hpp"
+#include "tests/engine/platform/gl_test.hpp"
 #include "tests/systems/geometry/stage.hpp"
 
 namespace petrichor::test {
@@ -10,12 +11,7 @@ glm::quat looking(glm::vec3 way) {
   return glm::quatLookAt(glm::normalize(way), glm::vec3(0, 1, 0));
 }
 
-class Gbuffer : public testing::Test {
- protected:
-  void SetUp() override {
-    if (!stage_context()) GTEST_SKIP() << "no OpenGL";
-  }
-};
+using Gbuffer = test::GlTest;
 
 // A ground, many boxes (some mirrored), and a wavy sheet that is cut into chunks.
 Model town(std::uint32_t seed) {

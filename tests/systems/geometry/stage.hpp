@@ -13,16 +13,11 @@
 #include "engine/platform/context.hpp"
 #include "systems/frame_gpu.hpp"
 #include "systems/gpu_scene.hpp"
+#include "tests/engine/platform/gl_test.hpp"
 
 namespace petrichor::test {
 
-inline Context* stage_context() {
-  static const std::unique_ptr<Context> context = [] {
-    auto made = make_headless_context({.debug = true});
-    return made ? std::move(*made) : nullptr;
-  }();
-  return context.get();
-}
+inline Context* stage_context() { return shared_gl_context(); }
 
 struct Pixels {
   int width = 0, height = 0, channels = 0;

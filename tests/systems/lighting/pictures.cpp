@@ -6,6 +6,7 @@
 #include "systems/atmosphere/airlight.h"
 #include "systems/brdf.h"
 #include "systems/lighting/chosen_lights.hpp"
+#include "tests/engine/platform/gl_test.hpp"
 #include "tests/systems/lighting/stage.hpp"
 
 namespace petrichor {
@@ -15,12 +16,7 @@ using namespace test;
 
 constexpr float pi = 3.14159265f;
 
-class Lighting : public testing::Test {
- protected:
-  void SetUp() override {
-    if (!context()) GTEST_SKIP() << "no OpenGL here";
-  }
-};
+using Lighting = test::GlTest;
 
 Model floor_model(const Look& look = {}) {
   Model model;

@@ -77,18 +77,6 @@ inline FrameLight lamp(glm::vec3 position, float candela) {
   return light;
 }
 
-inline Context* context() {
-  static std::unique_ptr<Context> kept;
-  static bool tried = false;
-  if (!tried) {
-    tried = true;
-    auto made = make_headless_context({.debug = true});
-    if (made) kept = std::move(*made);
-  }
-  if (kept) kept->make_current();
-  return kept.get();
-}
-
 // The table that the tests start from: every pass, and what each writes under its own name.
 inline nlohmann::json full_table() {
   return nlohmann::json::parse(R"json({

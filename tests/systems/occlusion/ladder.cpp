@@ -11,6 +11,7 @@
 #include "systems/occlusion/stage.hpp"
 #include "systems/occlusion/street.hpp"
 #include "systems/rainfall/extract.hpp"
+#include "tests/engine/platform/gl_test.hpp"
 #include "tests/systems/geometry/stage.hpp"
 
 namespace petrichor::test {
@@ -27,10 +28,11 @@ Wind wind_of(float speed_mps, bool gusts) {
   return wind;
 }
 
-class ShelterLadder : public testing::Test {
+class ShelterLadder : public test::GlTest {
  protected:
   void SetUp() override {
-    if (!stage_context()) GTEST_SKIP() << "no OpenGL";
+    test::GlTest::SetUp();
+    if (IsSkipped()) return;
     stage = std::make_unique<OcclusionStage>();
     stage->add_placed(shelter_street());
     emitter.rain_mm_per_hour = 10.0f;

@@ -4,6 +4,7 @@
 
 #include <glm/gtc/matrix_transform.hpp>
 
+#include "tests/engine/platform/gl_test.hpp"
 #include "tests/systems/geometry/stage.hpp"
 
 namespace petrichor::test {
@@ -80,10 +81,11 @@ struct Answer {
   bool sheltered;
 };
 
-class Occlusion : public testing::Test {
+class Occlusion : public test::GlTest {
  protected:
   void SetUp() override {
-    if (!stage_context()) GTEST_SKIP() << "no OpenGL";
+    test::GlTest::SetUp();
+    if (IsSkipped()) return;
     model_ = street();
     auto offers = occlusion_passes();
     PassOffer ask;

@@ -5,24 +5,16 @@
 
 #include <cmath>
 
-#include "engine/platform/context.hpp"
 #include "systems/drops/drop_physics.hpp"
 #include "systems/drops/drop_sizes.hpp"
 #include "systems/rainfall/extract.hpp"
+#include "tests/engine/platform/gl_test.hpp"
 #include "tests/systems/rainfall/field.hpp"
 
 namespace petrichor {
 namespace {
 
-class RainMeasure : public testing::Test {
- protected:
-  void SetUp() override {
-    auto made = make_headless_context({.debug = true});
-    if (!made) GTEST_SKIP() << made.error().message;
-    context = std::move(*made);
-  }
-  std::unique_ptr<Context> context;
-};
+using RainMeasure = test::GlTest;
 
 TEST_F(RainMeasure, WaterThatFallsIsTheWaterThatWasAsked) {
   for (const double rate : {0.5, 2.5, 10.0, 50.0, 100.0}) {

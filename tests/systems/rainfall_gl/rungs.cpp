@@ -4,29 +4,14 @@
 #include <cmath>
 #include <memory>
 
-#include "engine/platform/context.hpp"
 #include "systems/rainfall/ladders.hpp"
 #include "systems/rainfall/studio.hpp"
+#include "tests/engine/platform/gl_test.hpp"
 
 namespace petrichor {
 namespace {
 
-class RainRungs : public testing::TestWithParam<int> {
- protected:
-  static void SetUpTestSuite() {
-    auto made = make_headless_context({.debug = true});
-    if (made) context = std::move(*made);
-  }
-  static void TearDownTestSuite() { context.reset(); }
-  void SetUp() override {
-    if (!context) GTEST_SKIP() << "no OpenGL 4.5";
-    errors = gl_error_count();
-  }
-  void TearDown() override { EXPECT_EQ(context ? gl_error_count() : errors, errors) << last_gl_error(); }
-
-  inline static std::unique_ptr<Context> context;
-  int errors = 0;
-};
+class RainRungs : public test::OnGl<testing::TestWithParam<int>> {};
 
 // A white wall and drops that shine with nothing: the picture is the transmittance.
 StudioScene white_wall(float distance_m, float rate) {

@@ -4,28 +4,17 @@
 #include <cmath>
 #include <memory>
 
-#include "engine/platform/context.hpp"
 #include "systems/rainfall/cone/cone.hpp"
 #include "systems/rainfall/extract.hpp"
 #include "systems/rainfall/snow/extract.hpp"
 #include "systems/rainfall/stage.hpp"
+#include "tests/engine/platform/gl_test.hpp"
 
 namespace petrichor {
 namespace {
 
-class ConePicture : public testing::Test {
+class ConePicture : public test::GlTest {
  protected:
-  static void SetUpTestSuite() {
-    auto made = make_headless_context({.debug = true});
-    if (made) context = std::move(*made);
-  }
-  static void TearDownTestSuite() { context.reset(); }
-  void SetUp() override {
-    if (!context) GTEST_SKIP() << "no OpenGL 4.5";
-    errors = gl_error_count();
-  }
-  void TearDown() override { EXPECT_EQ(context ? gl_error_count() : errors, errors) << last_gl_error(); }
-
   // A white wall before drops that shine with nothing: the picture is the transmittance.
   static StageSet wall(float wall_m) {
     StageSet set;
@@ -40,9 +29,6 @@ class ConePicture : public testing::Test {
     EXPECT_TRUE(made) << (made ? "" : made.error().message);
     return made ? std::move(*made) : nullptr;
   }
-
-  inline static std::unique_ptr<Context> context;
-  int errors = 0;
 };
 
 Frame rain_frame(float mm_per_hour, float exposure_s, double time_s, const DoubleCone& set = {}, int width = 160,

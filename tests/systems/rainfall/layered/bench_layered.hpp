@@ -7,26 +7,15 @@
 #include <memory>
 #include <vector>
 
-#include "engine/platform/context.hpp"
 #include "systems/rainfall/extract.hpp"
 #include "systems/rainfall/layered/motion.hpp"
 #include "systems/rainfall/stage.hpp"
+#include "tests/engine/platform/gl_test.hpp"
 
 namespace petrichor {
 
-class LayeredTest : public testing::Test {
+class LayeredTest : public test::GlTest {
  protected:
-  static void SetUpTestSuite() {
-    auto made = make_headless_context({.debug = true});
-    if (made) context = std::move(*made);
-  }
-  static void TearDownTestSuite() { context.reset(); }
-  void SetUp() override {
-    if (!context) GTEST_SKIP() << "no OpenGL 4.5";
-    errors = gl_error_count();
-  }
-  void TearDown() override { EXPECT_EQ(context ? gl_error_count() : errors, errors) << last_gl_error(); }
-
   static std::unique_ptr<RainStage> stage(const StageSet& set) {
     auto made = RainStage::make(context->device().software, set);
     EXPECT_TRUE(made) << (made ? "" : made.error().message);
@@ -41,9 +30,6 @@ class LayeredTest : public testing::Test {
     set.wall_hides = true;
     return set;
   }
-
-  inline static std::unique_ptr<Context> context;
-  int errors = 0;
 };
 
 inline Emitter layered_rain(float mm_per_hour) {

@@ -5,7 +5,6 @@
 #include <numbers>
 #include <string>
 
-#include "engine/platform/context.hpp"
 #include "systems/gpu_scene.hpp"
 #include "systems/drops/drop_optics.hpp"
 #include "systems/rainfall/extract.hpp"
@@ -13,6 +12,7 @@
 #include "systems/rainfall/near_drops/near_truth.hpp"
 #include "systems/rainfall/near_drops/passes.hpp"
 #include "systems/rainfall/stage.hpp"
+#include "tests/engine/platform/gl_test.hpp"
 
 namespace petrichor {
 namespace {
@@ -79,19 +79,8 @@ TEST(NearOptics, BrightBottomDarkTop) {  // shared physics, section 3: sky 1, gr
   EXPECT_NEAR(upper / count, 0.066, 0.02);
 }
 
-class NearPicture : public testing::Test {
+class NearPicture : public test::GlTest {
  protected:
-  static void SetUpTestSuite() {
-    auto made = make_headless_context({.debug = true});
-    if (made) context = std::move(*made);
-  }
-  static void TearDownTestSuite() { context.reset(); }
-  void SetUp() override {
-    if (!context) GTEST_SKIP() << "no OpenGL 4.5";
-    errors = gl_error_count();
-  }
-  void TearDown() override { EXPECT_EQ(context ? gl_error_count() : errors, errors) << last_gl_error(); }
-
   static std::unique_ptr<RainStage> stage(const StageSet& set) {
     auto made = RainStage::make(context->device().software, set);
     EXPECT_TRUE(made) << (made ? "" : made.error().message);
@@ -114,9 +103,6 @@ class NearPicture : public testing::Test {
     f.rain->techniques.set(Effect::near_drops, rung);
     return f;
   }
-
-  inline static std::unique_ptr<Context> context;
-  int errors = 0;
 };
 
 StageSet plain(glm::vec3 wall, float distance_m = 12.0f) {

@@ -7,26 +7,15 @@
 #include <memory>
 #include <vector>
 
-#include "engine/platform/context.hpp"
 #include "systems/rainfall/snow/extract.hpp"
 #include "systems/rainfall/snow/passes.hpp"
 #include "systems/rainfall/stage.hpp"
+#include "tests/engine/platform/gl_test.hpp"
 
 namespace petrichor {
 
-class SnowTest : public testing::Test {
+class SnowTest : public test::GlTest {
  protected:
-  static void SetUpTestSuite() {
-    auto made = make_headless_context({.debug = true});
-    if (made) context = std::move(*made);
-  }
-  static void TearDownTestSuite() { context.reset(); }
-  void SetUp() override {
-    if (!context) GTEST_SKIP() << "no OpenGL 4.5";
-    errors = gl_error_count();
-  }
-  void TearDown() override { EXPECT_EQ(context ? gl_error_count() : errors, errors) << last_gl_error(); }
-
   static std::unique_ptr<RainStage> stage(StageSet set) {
     set.flakes = true;
     auto made = RainStage::make(context->device().software, set);
@@ -42,9 +31,6 @@ class SnowTest : public testing::Test {
     set.wall_hides = true;
     return stage(set);
   }
-
-  inline static std::unique_ptr<Context> context;
-  int errors = 0;
 };
 
 struct SnowView {

@@ -8,27 +8,16 @@
 #include <memory>
 
 #include "components/weather.hpp"
-#include "engine/platform/context.hpp"
 #include "systems/rainfall/extract.hpp"
 #include "systems/rainfall/passes.hpp"
 #include "systems/rainfall/stage.hpp"
+#include "tests/engine/platform/gl_test.hpp"
 
 namespace petrichor {
 namespace {
 
-class Sprites : public testing::Test {
+class Sprites : public test::GlTest {
  protected:
-  static void SetUpTestSuite() {
-    auto made = make_headless_context({.debug = true});
-    if (made) context = std::move(*made);
-  }
-  static void TearDownTestSuite() { context.reset(); }
-  void SetUp() override {
-    if (!context) GTEST_SKIP() << "no OpenGL 4.5";
-    errors = gl_error_count();
-  }
-  void TearDown() override { EXPECT_EQ(context ? gl_error_count() : errors, errors) << last_gl_error(); }
-
   // A wall behind drops that shine with nothing: the picture is the transmittance.
   static std::unique_ptr<RainStage> stage(float wall_m, int path = 0, float wall_cd_m2 = 1.0f) {
     StageSet set;
@@ -41,9 +30,6 @@ class Sprites : public testing::Test {
     EXPECT_TRUE(made) << (made ? "" : made.error().message);
     return made ? std::move(*made) : nullptr;
   }
-
-  inline static std::unique_ptr<Context> context;
-  int errors = 0;
 };
 
 Frame frame_of(double time_s, int width = 160, int height = 90) {

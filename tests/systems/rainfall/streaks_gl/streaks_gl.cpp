@@ -6,20 +6,18 @@
 #include <vector>
 
 #include "engine/core/random.hpp"
-#include "engine/platform/context.hpp"
 #include "systems/rainfall/extract.hpp"
 #include "systems/rainfall/stage.hpp"
 #include "systems/rainfall/streaks/bake.hpp"
 #include "systems/rainfall/streaks/gpu.hpp"
+#include "tests/engine/platform/gl_test.hpp"
 
 namespace petrichor {
 namespace {
 
-class Streaks : public testing::Test {
+class Streaks : public test::GlTest {
  protected:
   static void SetUpTestSuite() {
-    auto made = make_headless_context({.debug = true});
-    if (made) context = std::move(*made);
     StreakBake bake;
     bake.grid = {5, 5, 5};
     bake.along = 16;
@@ -27,19 +25,9 @@ class Streaks : public testing::Test {
     bake.rays = 1500;
     table = std::make_shared<const StreakTable>(bake_streaks(bake));
   }
-  static void TearDownTestSuite() {
-    use_streak_table(nullptr);
-    context.reset();
-  }
-  void SetUp() override {
-    if (!context) GTEST_SKIP() << "no OpenGL 4.5";
-    errors = gl_error_count();
-  }
-  void TearDown() override { EXPECT_EQ(context ? gl_error_count() : errors, errors) << last_gl_error(); }
+  static void TearDownTestSuite() { use_streak_table(nullptr); }
 
-  inline static std::unique_ptr<Context> context;
   inline static std::shared_ptr<const StreakTable> table;
-  int errors = 0;
 };
 
 TEST_F(Streaks, ReadTheSameOnGpuAndCpu) {
