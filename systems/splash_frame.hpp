@@ -26,7 +26,6 @@ struct FrameSplashes {
   float edge_strength = 0.8f, edge_bias = 0.55f;
   float backlight = 1.0f;  // multiplies the light of lamps behind a splash; 1 is true
   std::vector<SplashGlow> glows;
-  std::uint64_t glows_version = 0;  // a hash of them
 };
 
 }  // namespace petrichor

@@ -29,7 +29,9 @@ void lay_over(RainSums& sums, PassContext& context, const ParticleOptics& optics
   if (sums.width != context.width || sums.height != context.height) return;
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
   bind_rain_sums(sums, context.width, context.height);
-  const bool lamps = context.frame.uniforms.counts.x > 0;
+  const Frame& frame = context.frame;
+  // A flash of lightning lights splashes also where there is no lamp.
+  const bool lamps = frame.uniforms.counts.x > 0 || (frame.rain && frame.rain->layered.lightning > 0.0f);
   std::string name = sums.software ? "raster" : "composite";
   if (context.has("environment")) name += "_environment";
   if (sums.software && lamps) name += "_lamps";

@@ -95,13 +95,6 @@ const MeshGlows& known_glows(const std::shared_ptr<const Model>& model) {
   return glows;
 }
 
-std::uint64_t hash_of(const std::vector<SplashGlow>& glows) {
-  std::uint64_t hash = 1469598103934665603ull;
-  const auto* bytes = reinterpret_cast<const unsigned char*>(glows.data());
-  for (std::size_t i = 0; i < glows.size() * sizeof(SplashGlow); ++i) hash = (hash ^ bytes[i]) * 1099511628211ull;
-  return hash;
-}
-
 }  // namespace
 
 std::vector<SplashGlow> splash_glows(const Frame& frame, const std::vector<std::shared_ptr<const Model>>& models,
@@ -164,7 +157,6 @@ void extract_splashes(const Registry& registry, Frame& frame, const std::vector<
     splashes->backlight = set.backlight;
   }
   splashes->glows = splash_glows(frame, models, splashes->reach_m + 32.0f);
-  splashes->glows_version = hash_of(splashes->glows);
   frame.splashes = std::move(splashes);
 }
 

@@ -12,12 +12,11 @@ namespace petrichor {
 struct OverheadState {
   Buffer glows;
   glm::dvec2 middle_m{0.0};  // world x and z
-  std::uint64_t version = 0;
-  bool drawn = false;
+  float reach_m = 0.0f;       // about the camera, where the picture is drawn
 };
 constexpr double overhead_side_m = 64.0, overhead_step_m = 8.0;
 
-// Pass splash_overhead: drawn anew when what shines changed, or the camera has gone a step.
+// Pass splash_overhead: drawn for each frame, about a middle that moves by whole steps.
 PassOffer overhead_pass(std::shared_ptr<OverheadState>);
 // Uniform of splash.glsl: middle relative to the camera, side, and what is taken off.
 glm::vec4 overhead_place(const OverheadState&, const Frame&, float known_lux);

@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "systems/drip_frame.hpp"
+#include "systems/in_view.hpp"
 #include "systems/splash/columns.hpp"
 #include "systems/splash/crown.hpp"
 #include "systems/splash/impact.h"
@@ -62,6 +63,18 @@ float lightning_bias(const Frame& frame) {
   return 1.0f + (frame.rain ? frame.rain->layered.lightning : 0.0f);
 }
 
+bool is_printed(const Frame& frame) {
+  return frame.splashes->published && frame.techniques.share(Effect::splashes, SplashRung::random) > 0.0f;
+}
+
+// What a flash adds from all of the sky, cd/m2: l_b - 1 times what the sky gives, and under a black sky a hundredth of
+// the picture's white, so that it is seen there too. (No lamp: the scene's own lights of a flash come as lamps do.)
+glm::vec3 flash_of(const Frame& frame) {
+  const glm::vec3 sky = 0.5f * (frame.sky.zenith_cd_m2 + frame.sky.horizon_cd_m2);
+  const float least = 0.01f / std::max(frame.uniforms.lens.w, 1e-12f);
+  return (lightning_bias(frame) - 1.0f) * glm::max(sky, glm::vec3(least));
+}
+
 void prepare(const SplashGpuState& gpu, PassContext& context, const Program& program, const Limits& limits) {
   const Frame& frame = context.frame;
   const FrameSplashes& s = *frame.splashes;
@@ -70,14 +83,17 @@ void prepare(const SplashGpuState& gpu, PassContext& context, const Program& pro
   program.set("has_normal", int(context.has("normal")));
   program.set("has_water", int(context.has("water")));
   program.set("has_overhead", int(context.has("overhead")));
-  if (context.has("overhead"))
+  if (context.has("overhead")) {
     program.set("overhead_place",
                 overhead_place(*gpu.overhead, frame, context.has("environment") ? overhead_at_camera(frame) : 0.0f));
+    program.set("overhead_reach", gpu.overhead->reach_m);
+  }
   const float field = frame.techniques.share(Effect::splashes, SplashRung::field),
               secondary = frame.techniques.share(Effect::splashes, SplashRung::secondary);
   program.set("reach", glm::vec4(limits.reach_m, limits.secondary_reach_m, field + secondary, secondary));
   program.set("look", glm::vec4(s.size, s.size_variation, s.opacity, s.opacity_variation));
   program.set("lights_look", glm::vec3(s.backlight, lightning_bias(frame), ambient_of(frame)));
+  program.set("flash", is_printed(frame) ? glm::vec3(0.0f) : flash_of(frame));
   program.set("published", int(s.published));
   program.set("capacity", unsigned(gpu.capacity));
   program.set("cell_capacity", unsigned(gpu.cell_capacity));
@@ -263,17 +279,16 @@ void draw_splashes(SplashGpuState& gpu, PassContext& context) {
   bind_rain_sums(*gpu.sums, context.width, context.height);
   bind(SPLASH_COMMAND_BINDING, gpu.command);
   bind(SPLASH_LIST_BINDING, gpu.list);
-  const bool lamps = frame.uniforms.counts.x > 0;
+  const bool printed = is_printed(frame);
+  const bool lit = frame.uniforms.counts.x > 0 || (!printed && lightning_bias(frame) > 1.0f);
   context.bind_texture(0, "depth");
   glBindTextureUnit(1, gpu.crown.id);
-  const Program& program = context.program(shader_of(gpu, lamps ? "draw_lamps" : "draw"));
+  const Program& program = context.program(shader_of(gpu, lit ? "draw_lamps" : "draw"));
   program.use();
   program.set("capacity", unsigned(gpu.capacity));
   program.set("edges", glm::vec2(s.edge_strength, s.edge_bias));
-  // Section 3.2, 1 - l_b/2: half the opacity without lightning, which is taken for whole here; never below nothing.
-  const bool printed = s.published && frame.techniques.share(Effect::splashes, SplashRung::random) > 0.0f;
-  const float clear = std::max(1.0f - 0.5f * lightning_bias(frame), printed ? 0.0f : 0.1f);
-  program.set("clear_share", printed ? clear : 2.0f * clear);
+  // Section 3.2, as printed: opacity times 1 - l_b/2, by which a flash would darken splashes. Else lightning is light.
+  program.set("clear_share", printed ? std::max(1.0f - 0.5f * lightning_bias(frame), 0.0f) : 1.0f);
   program.set("distance_fade", printed ? 1.0f / s.reach_m : 0.0f);
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT);
   glBindBuffer(GL_DISPATCH_INDIRECT_BUFFER, gpu.command.id);
@@ -281,7 +296,7 @@ void draw_splashes(SplashGpuState& gpu, PassContext& context) {
 }
 
 bool wanted(const Frame& frame) {
-  return frame.splashes != nullptr;
+  return frame.splashes && any_surface_in_view(frame);
 }
 
 void add_shader(PassOffer& offer, const std::string& name, const std::string& file, std::vector<std::string> defines) {

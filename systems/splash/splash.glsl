@@ -15,9 +15,11 @@ layout(binding = 3) uniform sampler2D overhead_light;  // irradiance by what is 
 
 uniform bool has_normal, has_water, has_overhead;
 uniform vec4 overhead_place;  // xz of its middle, relative, m; its side, m; irradiance that the environment knows of
+uniform float overhead_reach;  // m about the camera, where it is drawn
 uniform vec4 reach;           // m: of splashes, of their droplets; share of field and secondary; share of secondary
 uniform vec4 look;            // size, its variation, opacity, its variation
 uniform vec3 lights_look;     // backlight; lightning bias l_b; ambient, output units
+uniform vec3 flash;      // of lightning, from all of the sky: cd/m2
 uniform bool published;
 uniform vec3 tiling;  // of tiles of ground: the first corner, relative, m; their side, m
 
@@ -112,7 +114,7 @@ float splash_random(uint bits, uint which) { return random_float(uvec4(bits, whi
 // Irradiance from above that the environment, captured about the camera, does not have, over 4 pi: what water that
 // scatters to all sides shows of it, cd/m2.
 vec3 overhead_at(vec3 place) {
-  if (!has_overhead) return vec3(0.0);
+  if (!has_overhead || any(greaterThan(abs(place.xz), vec2(overhead_reach + 0.2)))) return vec3(0.0);
   vec2 uv = (place.xz - overhead_place.xy) / overhead_place.z + 0.5;
   if (any(greaterThan(abs(uv - 0.5), vec2(0.5)))) return vec3(0.0);
   vec3 lux = textureLod(overhead_light, uv, 0.0).rgb;
@@ -201,7 +203,8 @@ bool begin_splash(Impact i, vec3 velocity, float diameter, uint bits, bool dropl
 // sum: of lamp_light; towards the eye through mist and rain, in output units.
 void light_splash(inout SplashGpu s, vec3 sum) {
   float distance_to_eye = length(s.place_radius.xyz);
-  s.light_weight.rgb = seen_light(sum * lights_look.x * lights_look.y + overhead_at(s.place_radius.xyz), distance_to_eye);
+  vec3 light = sum * lights_look.x * lights_look.y + overhead_at(s.place_radius.xyz) + flash;
+  s.light_weight.rgb = seen_light(light, distance_to_eye);
 }
 
 vec3 above(Impact i) { return i.place + 0.005 * i.normal; }

@@ -15,11 +15,13 @@ layout(rgba16f, binding = 0) writeonly uniform image2D overhead;
 uniform uint glow_count;
 uniform vec3 middle_side;  // xz relative, m; side, m
 uniform bool has_map;
+uniform vec3 first_block;  // whole numbers: first texel; texels to each side that have one answer
 
 void main() {
-  ivec2 texel = ivec2(gl_GlobalInvocationID.xy), size = imageSize(overhead);
+  int block = int(first_block.z);
+  ivec2 texel = ivec2(first_block.xy) + ivec2(gl_GlobalInvocationID.xy) * block, size = imageSize(overhead);
   if (any(greaterThanEqual(texel, size))) return;
-  vec2 at = middle_side.xy + ((vec2(texel) + 0.5) / vec2(size) - 0.5) * middle_side.z;
+  vec2 at = middle_side.xy + ((vec2(texel) + 0.5 * first_block.z) / vec2(size) - 0.5) * middle_side.z;
   vec3 place = vec3(at.x, 0.0, at.y);
   if (has_map) {
     float hit = first_hit_distance_m(place);
@@ -34,5 +36,6 @@ void main() {
     float facing = dot(normal, normal) > 0.5 ? max(dot(way, normal) * inversesqrt(d2), 0.0) : 1.0;
     lux += g.intensity_normal_y.rgb * (facing / d2);
   }
-  imageStore(overhead, texel, vec4(lux, 1.0));
+  for (int y = 0; y < block; ++y)
+    for (int x = 0; x < block; ++x) imageStore(overhead, texel + ivec2(x, y), vec4(lux, 1.0));
 }

@@ -79,11 +79,13 @@ Result<void> SplashStage::load() {
   Json list = {{"pass", "splash_list"},  {"depth", "depth"}, {"normal", "normal"},
                {"occlusion_map", "map"}, {"water", "water"}, {"overhead", "overhead"}};
   if (set_.unlimited) list["parameters"] = {{"software_most", 0}};
+  Json overhead = {{"pass", "splash_overhead"}, {"overhead", "overhead"}, {"occlusion_map", "map"}};
+  if (set_.unlimited) overhead["parameters"] = {{"software_reach", 0}};
   table["passes"] = Json::array(
       {{{"pass", "gbuffer"}, {"depth", "depth"}, {"albedo", "albedo"}, {"normal", "normal"}, {"emissive", "emissive"}},
        {{"pass", "occlusion_map"}, {"occlusion_map", "map"}},
        {{"pass", "stage_ground"}, {"colour", "colour"}, {"water", "water"}},
-       {{"pass", "splash_overhead"}, {"overhead", "overhead"}, {"occlusion_map", "map"}},
+       overhead,
        list,
        {{"pass", "splash_draw"}, {"depth", "depth"}},
        {{"pass", "rain_composite"}, {"colour", "colour"}}});

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <glm/gtc/matrix_transform.hpp>
 #include <numbers>
 #include <random>
 
@@ -221,6 +222,50 @@ TEST_F(SplashesDrawn, AnyOrderOfFramesGivesTheSameBytes) {
   EXPECT_EQ(std::memcmp(first.data(), again.data(), first.size() * sizeof(float)), 0);
   EXPECT_NE(std::memcmp(first.data(), back.data(), first.size() * sizeof(float)), 0);
   EXPECT_NE(std::memcmp(first.data(), far.data(), first.size() * sizeof(float)), 0);
+}
+
+// Opacity that lightning takes (as printed) darkened splashes in a flash.
+TEST_F(SplashesDrawn, AFlashMakesThemBrighterWithAndWithoutLamps) {
+  for (const bool lamps : {true, false})
+    for (const float sky : {0.01f, 0.0f}) {
+      double before = 0.0;
+      for (const float flash : {0.0f, 1.0f, 3.0f}) {
+        Frame f = frame(9.0, 50.0f);
+        f.sky.zenith_cd_m2 = f.sky.horizon_cd_m2 = glm::vec3(sky);
+        if (!lamps) f.lights.clear();
+        Frame none = f;
+        f.rain->layered.lightning = none.rain->layered.lightning = flash;
+        none.techniques.set(Effect::splashes, SplashRung::none);
+        const double added = brightness(f) - brightness(none);
+        if (flash > 0.0f) EXPECT_GT(added, before) << flash << " lamps " << lamps << " sky " << sky;
+        before = added;
+      }
+      EXPECT_GT(before, 0.0);
+    }
+}
+
+// What shines from above falls on the first surface under the sky, which moves: a picture kept from another frame shows.
+TEST_F(SplashesDrawn, AnyOrderOfFramesGivesTheSameBytesUnderGlowsAndARoofThatMoves) {
+  const auto picture = [&](int number) {
+    Frame f = frame(100.0 + number, 50.0f);
+    f.camera.position_m.x = 0.37 * number;
+    f.lights.resize(1);
+    f.lights[0].intensity = glm::vec3(0.01f);
+    f.instances[1].matrix = glm::translate(glm::mat4(1.0f), glm::vec3(0.9f * float(number), -1.5f, 0.0f));
+    f.geometry_version = 100u + unsigned(number);
+    auto set = default_splashes();
+    set->glows.push_back({{0.0f, 2.5f, -5.0f}, {0.0f, 0.0f, 0.0f}, {400.0f, 300.0f, 200.0f}});
+    f.splashes = set;
+    EXPECT_TRUE(stage->draw(f));
+    return stage->light();
+  };
+  const auto second = picture(2);  // far from what an earlier test left, and before the first
+  const auto first = picture(0);
+  picture(1);
+  const auto again = picture(2), once_more = picture(0);
+  EXPECT_EQ(std::memcmp(second.data(), again.data(), second.size() * sizeof(float)), 0);
+  EXPECT_EQ(std::memcmp(first.data(), once_more.data(), first.size() * sizeof(float)), 0);
+  EXPECT_NE(std::memcmp(first.data(), second.data(), first.size() * sizeof(float)), 0);
 }
 
 TEST_F(SplashesDrawn, ACameraThatGrazesTheGroundSeesThemFiniteAndInItsOwnPixels) {

@@ -224,7 +224,6 @@ TEST_F(SplashField, GlowsThatAreNoLightsLightThem) {
     rain_on(f, 50.0f);
     auto set = default_splashes();
     if (glow) set->glows.push_back({{0.0f, 2.0f, -6.0f}, {0.0f, 0.0f, 0.0f}, {400.0f, 300.0f, 200.0f}});
-    set->glows_version = glow;
     f.splashes = set;
     EXPECT_TRUE(s->draw(f));
     double sum = 0.0;
