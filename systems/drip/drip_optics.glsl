@@ -51,6 +51,26 @@ vec3 seen_in_drip(vec3 d, vec3 o, float b, float area) {
   return sum + (1.0 - share.x - share.y - share.z) * all_round();
 }
 
+// Of a lamp's image in the disc, in radii: at least so wide that pixels, and the places along a way, find it.
+float glint_width(float r) { return max(0.27, 0.4 / r); }
+
+// The mean of that image over a disc of r pixels with the edge of a pixel, weighted as drips_over.frag.glsl weights
+// it: what falls beyond the rim is given back, so that the lamp's light is kept however small the disc.
+float glint_mean(float at, float r) {
+  float width = glint_width(r), rim = 1.0 + 0.5 / r;
+  vec2 sum = vec2(0.0);
+  for (int i = 0; i < 12; ++i) {
+    float b = rim * (float(i) + 0.5) / 12.0;
+    float weight = b * min((rim - b) * r, 1.0);
+    for (int j = 0; j < 12; ++j) {
+      float turn = 0.2617993878 * (float(j) + 0.5);  // half of the circle: the other is its mirror image
+      float away2 = b * b + at * at - 2.0 * b * at * cos(turn);
+      sum += weight * vec2(exp(-0.5 * away2 / (width * width)), 1.0);
+    }
+  }
+  return max(sum.x / sum.y, 1e-6);
+}
+
 // Where in the disc a lamp is seen whose light turns by `turn` on its way through the drop to the eye: distance from the
 // centre, 0 to 1; negative: on the side away from the lamp, where light comes straight through.
 float glint_at(float turn) {

@@ -70,7 +70,9 @@ void main() {
     float edge = (1.0 - length(q)) * min(half_size.x, half_size.y) + 0.5;  // pixels
     if (edge <= 0.0) return;
     vec4 shown = billboard(look, q, along, side, r, len);
-    float opacity = shown.a * clamp(kept, 0.0, 1.0) * min(edge, 1.0);
+    // The soft edge reaches beyond the ellipse: its mean share of it is pi (1 + 1 / (12 m^2)).
+    float m = min(half_size.x, half_size.y), even = m * m / (m * m + 0.0833333);
+    float opacity = shown.a * clamp(kept, 0.0, 1.0) * even * min(edge, 1.0);
     over = vec4(shown.rgb * opacity, 1.0 - opacity);
     return;
   }
@@ -95,9 +97,6 @@ void main() {
   // The part of the drop's image that passes over the pixel: three places of it.
   int places = len < 0.5 ? 1 : 3;
   float area = clamp(max(1.0, (far - near) / float(places)) / (r * r), 1e-4, 3.14159265);
-  float across_glint = max(0.16, 0.4 / r), along_glint = max(across_glint, 0.4 * (far - near) / (float(places) * r));
-  // What of the glint falls beyond the rim is given back to it.
-  float within = 1.0 / (1.0 + exp(-1.7 * (1.0 - length(glint_place)) / across_glint));
   vec3 shown = even_light;
   for (int i = 0; i < places; ++i) {
     float centre = places == 1 ? near : mix(near, far, (float(i) + 0.5) / 3.0);
@@ -105,8 +104,8 @@ void main() {
     float b = min(length(q), 0.999);
     vec3 o = b > 1e-3 ? normalize(in_world(q)) : normalize(in_world(side));
     vec2 g = q - glint_place;
-    vec2 bent = vec2(dot(g, side) / across_glint, dot(g, along) / along_glint);
-    float glint = exp(-0.5 * dot(bent, bent)) / (2.0 * across_glint * along_glint * within);
+    float width = glint_width(r);
+    float glint = exp(-0.5 * dot(g, g) / (width * width));
     shown += (seen_in_drip(ray, o, b, area) + glint_light * glint) / float(places);
   }
   over = vec4(shown * coverage, 1.0 - coverage);

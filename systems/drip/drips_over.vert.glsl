@@ -74,6 +74,7 @@ void main() {
   vec2 side = vec2(dot(towards_lamp, right), dot(towards_lamp, up));
   float turn = acos(clamp(dot(towards_lamp, ray), -1.0, 1.0));
   glint_place = side / max(length(side), 1e-4) * clamp(glint_at(turn), -0.82, 0.82);
+  if (most > 0.0 && drip.bits.w == 0u) glint_light /= glint_mean(length(glint_place), r);
 #endif
   // Two triangles about the way.
   vec2 corner = vec2(float(gl_VertexID & 1) * 2.0 - 1.0, float(gl_VertexID >> 1) * 2.0 - 1.0);

@@ -32,7 +32,7 @@ PassOffer wall_offer() {
   offer.slots = {{"colour", SlotAccess::write}};
   offer.execute = [](PassContext& context) {
     const glm::vec4& h = context.frame.uniforms.sky_horizon;
-    clear_texture(context.texture("colour"), {h.r, h.g, h.b, 1.0f});
+    clear_texture(context.texture("colour"), {h.r, h.g, h.b, 1.0f}, ClearBy::compute);
   };
   return offer;
 }
@@ -61,7 +61,8 @@ Result<std::unique_ptr<DripStage>> DripStage::make(bool software_gl) {
   stage->graph_ = std::make_unique<Graph>(stage->library_, std::move(offers));
   using Json = nlohmann::json;
   Json table;
-  table["resources"]["colour"] = {{"format", "rgba32f"}};
+  // As city.lua has it: rain_composite.comp.glsl declares its image rgba16f, and to store into another format is undefined.
+  table["resources"]["colour"] = {{"format", "rgba16f"}};
   table["passes"] = Json::array({{{"pass", "stage_wall"}, {"colour", "colour"}},
                                  {{"pass", "drips"}},
                                  {{"pass", "stage_composite"}, {"colour", "colour"}},

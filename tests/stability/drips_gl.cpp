@@ -48,9 +48,15 @@ TEST_F(DrawnDrips, RungsKeepTheMeanOfTheTruthAndThePrintedOpacityDoesNot) {
     ASSERT_TRUE(c);
     std::printf("rung %d: error %.3f, mean %+.5f of %+.5f\n", int(rung), c->error, c->mean_shift, c->true_shift);
     worst = std::max(worst, std::abs(c->mean_shift / c->true_shift));
-    EXPECT_LT(c->error, 1.0) << int(rung);
-    EXPECT_LT(std::abs(c->mean_shift), 0.005) << int(rung);  // of the background: shared physics, section 2d
+    EXPECT_LT(c->error, 0.8) << int(rung);
+    // Of the truth's own change, not of the background: drips are few.
+    EXPECT_LT(std::abs(c->mean_shift), 0.2 * std::abs(c->true_shift)) << int(rung);
   }
+  // The measure can fail: where nothing is drawn, all of the change is missing.
+  const auto nothing = compare_drips(*stage, *truth, set, DripRung::none, width, height);
+  ASSERT_TRUE(nothing);
+  EXPECT_NEAR(nothing->error, 1.0, 1e-6);
+  EXPECT_GT(std::abs(nothing->mean_shift), 0.9 * std::abs(nothing->true_shift));
   set.source.published = true;
   const auto c = compare_drips(*stage, *truth, set, DripRung::billboards, width, height);
   ASSERT_TRUE(c);
