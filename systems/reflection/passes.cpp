@@ -4,7 +4,9 @@
 #include <string>
 
 #include "engine/gpu/objects.hpp"
+#include "systems/drops/sums.hpp"
 #include "systems/frame.hpp"
+#include "systems/in_view.hpp"
 #include "systems/mirror_frame.hpp"
 #include "systems/reflection/choose.hpp"
 #include "systems/reflection/reflection.hpp"
@@ -21,6 +23,7 @@ struct ReflectionState {
   Buffer reflectors, tiles;
   Texture lists, pyramid, phases, streaks[2], black;
   Framebuffer canvas;
+  bool software = false, device_known = false;
   bool listed = false;  // this frame's tiles, until pass reflections_over has used them
 };
 using State = std::shared_ptr<ReflectionState>;
@@ -37,7 +40,8 @@ float rays_share(const Frame& frame) {
 }
 
 bool wanted(const Frame& frame) {
-  return frame.scene && frame.reflectors && share(frame, ReflectionRung::environment) < 1.0f;
+  return frame.scene && frame.reflectors && share(frame, ReflectionRung::environment) < 1.0f &&
+         any_surface_in_view(frame);
 }
 
 void bind_gbuffer(PassContext& context, bool emissive) {
@@ -151,7 +155,9 @@ void draw_lists(ReflectionState& state, PassContext& context, double threshold, 
   const unsigned header[REFLECTION_TILES_HEADER] = {0, 1, 1, 0, 0, 1, 1, 0};
   glNamedBufferSubData(state.tiles.id, 0, sizeof header, header);
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, REFLECTION_TILES_BINDING, state.tiles.id);
-  const Program& lists = context.program("lists");
+  if (!state.device_known) state.software = is_software_gl();
+  state.device_known = true;
+  const Program& lists = context.program(state.software ? "lists_software" : "lists");
   lists.use();
   bind_gbuffer(context, false);
   lists.set("threshold", static_cast<float>(threshold));
@@ -166,7 +172,8 @@ void draw_lists(ReflectionState& state, PassContext& context, double threshold, 
   lists.set("probe_count", probes);
   lists.set("backdrop", glm::max(context.frame.sky.horizon_cd_m2, glm::vec3(0.3f)));
   glBindImageTexture(0, state.lists.id, 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RGBA32UI);
-  lists.dispatch(across, down);
+  const int threads = state.software ? 1 : REFLECTION_TILE;  // a side, of a tile
+  lists.dispatch(threads * across, threads * down);
   glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT |
                   GL_COMMAND_BARRIER_BIT);
   state.listed = true;
@@ -248,6 +255,7 @@ PassOffer reflections(State state) {
            {"blur_steps", 4}},
           {{"seen", {{"systems/reflection/reflectors_seen.comp.glsl"}, {}}},
            {"lists", {{"systems/reflection/reflection_lists.comp.glsl"}, {}}},
+           {"lists_software", {{"systems/reflection/reflection_lists.comp.glsl"}, {"SOFTWARE"}}},
            {"pyramid_first", {{"systems/reflection/picture_pyramid.comp.glsl"}, {"FIRST"}}},
            {"pyramid", {{"systems/reflection/picture_pyramid.comp.glsl"}, {}}},
            {"impostor", {{"systems/reflection/impostor.vert.glsl", "systems/reflection/impostor.frag.glsl"}, {}}},
@@ -304,7 +312,8 @@ void lay_reflections_over(ReflectionState& state, PassContext& context) {
 
 PassOffer reflections_over(State state) {
   std::unordered_map<std::string, ShaderKey> shaders{
-      {"lists", {{"systems/reflection/reflection_lists.comp.glsl"}, {}}}};
+      {"lists", {{"systems/reflection/reflection_lists.comp.glsl"}, {}}},
+      {"lists_software", {{"systems/reflection/reflection_lists.comp.glsl"}, {"SOFTWARE"}}}};
   for (const bool toyshop : {false, true})
     for (const bool mirrors : {false, true})
       for (const bool probes : {false, true}) {
@@ -330,7 +339,9 @@ PassOffer reflections_over(State state) {
           // their k_a over every rung, 0 leaves the physical Fresnel term alone.
           {{"edge_exponent", 5.0}, {"distortion", 0.25}, {"published_edges", 0.0}},
           shaders,
-          [](const Frame& frame) { return wanted(frame) || (frame.scene && frame.mirrors); },
+          [](const Frame& frame) {
+            return wanted(frame) || (frame.scene && frame.mirrors && any_surface_in_view(frame));
+          },
           [state](PassContext& context) { lay_reflections_over(*state, context); }};
 }
 

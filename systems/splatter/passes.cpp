@@ -308,8 +308,10 @@ std::vector<PassOffer> splatter_passes(const DropPainting& painting) {
   splatter.parameters = {{"shells", 0.0}, {"least_px", 0.0}};
   splatter.shaders = both("splatter", {folder + "splatter.comp.glsl"});
   splatter.shaders.merge(both("shells", {folder + "shells.vert.glsl", folder + "shells.frag.glsl"}));
-  splatter.wanted = [](const Frame& frame) {
-    return misty(frame) && frame.techniques.share(Effect::splatter, SplatterRung::shells) > 0.0f;
+  splatter.wanted = [state](const Frame& frame) {
+    return misty(frame) && frame.techniques.share(Effect::splatter, SplatterRung::shells) > 0.0f &&
+           any_catcher_in_view(state->shapes, frame,
+                               2.0f * float(SPLATTER_REACH) * 1e-3f * frame.splatter->mist.crown_mm, 0.0f);
   };
   splatter.execute = [state](PassContext& context) { draw_splatter(*state, context); };
 
@@ -323,9 +325,12 @@ std::vector<PassOffer> splatter_passes(const DropPainting& painting) {
   halos.parameters = {{"steps", 0.0}, {"least_px", 0.0}};
   halos.shaders = both("layer", {folder + "mist_layer.comp.glsl"});
   halos.shaders.merge(both("fins", {folder + "fins.vert.glsl", folder + "fins.frag.glsl"}));
-  halos.wanted = [](const Frame& frame) {
-    return misty(frame) && (frame.techniques.share(Effect::halos, HaloRung::layer) > 0.0f ||
-                            frame.techniques.share(Effect::halos, HaloRung::fins) > 0.0f);
+  halos.wanted = [state](const Frame& frame) {
+    return misty(frame) &&
+           (frame.techniques.share(Effect::halos, HaloRung::layer) > 0.0f ||
+            frame.techniques.share(Effect::halos, HaloRung::fins) > 0.0f) &&
+           any_catcher_in_view(state->shapes, frame, 4.0f * frame.splatter->mist.height_m,
+                               8.0f * frame.splatter->mist.height_m);
   };
   halos.execute = [state](PassContext& context) { draw_halos(*state, context); };
   std::vector<PassOffer> offers;

@@ -79,6 +79,22 @@ KeptShape& kept_shape(ShapeStore& store, const std::shared_ptr<const Mesh>& mesh
   return at->second;
 }
 
+bool any_catcher_in_view(ShapeStore& store, const Frame& frame, float feature_m, float margin_m) {
+  if (!frame.splatter) return false;
+  const Frustum frustum = frustum_of(frame.uniforms.view_projection);
+  return std::any_of(frame.splatter->catchers.begin(), frame.splatter->catchers.end(), [&](const Catcher& c) {
+    const glm::mat4& m = frame.instances[c.instance].matrix;
+    const CatcherShape& shape = kept_shape(store, c.mesh).shape;
+    if (shape.positions.empty()) return false;
+    const glm::mat3 linear(m), absolute(glm::abs(linear[0]), glm::abs(linear[1]), glm::abs(linear[2]));
+    const glm::vec3 middle = linear * (0.5f * (shape.low_m + shape.high_m)) +
+                             glm::vec3(glm::dvec3(m[3]) - frame.camera.position_m);
+    const glm::vec3 half = absolute * (0.5f * (shape.high_m - shape.low_m)) + glm::vec3(0.01f + margin_m);
+    const float away = glm::length(glm::max(glm::abs(middle) - half, glm::vec3(0.0f)));
+    return feature_m * frame.uniforms.lens.z >= 0.01f * away && box_touches(frustum, middle, half);
+  });
+}
+
 std::vector<PlacedCatcher> place_catchers(ShapeStore& store, const Frame& frame, int width, int height, float feature_m,
                                           float least_px, float margin_m, int lamps, std::size_t most) {
   std::vector<PlacedCatcher> placed;

@@ -36,6 +36,10 @@ struct PlacedCatcher {
   float distance_m;                    // of the nearest place of that box
 };
 
+// Whether place_catchers could find any: a catcher's box, widened by margin_m, in the frustum, and its feature at least a
+// hundredth of a pixel tall.
+bool any_catcher_in_view(ShapeStore&, const Frame&, float feature_m, float margin_m);
+
 // Those in view whose feature of so many metres is at least so many pixels tall, nearest first, at most `most`. lamps:
 // how many each gets. margin_m: how far the effect reaches over the box.
 std::vector<PlacedCatcher> place_catchers(ShapeStore&, const Frame&, int width, int height, float feature_m,

@@ -4,6 +4,7 @@
 #include <memory>
 #include <string>
 
+#include "systems/in_view.hpp"
 #include "systems/puddle_frame.hpp"
 #include "systems/wetness/wetness.hpp"
 #include "systems/wetness/wetness_shared.h"
@@ -122,7 +123,10 @@ std::vector<PassOffer> wetness_passes() {
                      {"water", SlotAccess::write, true}},
                     {},
                     shaders(),
-                    [](const Frame& frame) { return frame.scene && (films_wanted(frame) || puddles_wanted(frame)); },
+                    [](const Frame& frame) {
+                      return frame.scene && (films_wanted(frame) || puddles_wanted(frame)) &&
+                             any_surface_in_view(frame);
+                    },
                     [buffers](PassContext& context) { wet_surfaces(context, *buffers); }});
   return offers;
 }

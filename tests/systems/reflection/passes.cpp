@@ -39,6 +39,16 @@ TEST_F(ReflectionPasses, DoNotRunInADryMattScene) {
   }
 }
 
+TEST_F(ReflectionPasses, DoNotRunWhereNoSurfaceIsInView) {
+  const auto stage = street(0.2f, ReflectionRung::impostors);
+  ASSERT_TRUE(stage);
+  stage->frame.camera.position_m.y += 100.0;  // over the roofs, straight up
+  stage->frame.camera.orientation = glm::angleAxis(1.5707963f, glm::vec3(1.0f, 0.0f, 0.0f));
+  ASSERT_TRUE(stage->draw());
+  EXPECT_FALSE(ran(*stage, "reflections"));
+  EXPECT_FALSE(ran(*stage, "reflections_over"));
+}
+
 TEST_F(ReflectionPasses, RunWhereGroundIsSmoothAndARungAsks) {
   const auto stage = street(0.2f, ReflectionRung::impostors);
   ASSERT_TRUE(stage);

@@ -170,6 +170,23 @@ TEST_F(SplashField, NothingRunsWhereItDoesNotRain) {
     if (r.name.rfind("splash_", 0) == 0 || r.name == "rain_composite") EXPECT_TRUE(r.culled) << r.name;
 }
 
+TEST_F(SplashField, NothingRunsWhereNoSurfaceIsInView) {
+  auto s = stage();
+  Frame f = s->frame(160, 90);
+  f.techniques.set(Effect::splashes, SplashRung::field);
+  rain_on(f, 30.0f);
+  const auto culled = [&] {
+    int count = 0;
+    for (const PassReport& r : s->report()) count += (r.name == "splash_list" || r.name == "splash_draw") && r.culled;
+    return count;
+  };
+  ASSERT_TRUE(s->draw(f));
+  EXPECT_EQ(culled(), 0);
+  f.camera.orientation = glm::angleAxis(1.5707963f, glm::vec3(1.0f, 0.0f, 0.0f));  // straight up
+  ASSERT_TRUE(s->draw(f));
+  EXPECT_EQ(culled(), 2);
+}
+
 TEST_F(SplashField, RungsGiveTheSameMeanLight) {
   auto s = stage({.film_mm = 0.4f});
   const auto mean = [&](SplashRung rung, SplashRung from, float blend) {

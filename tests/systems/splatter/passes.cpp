@@ -68,6 +68,17 @@ TEST_F(Splatter, NeitherPassRunsWithoutRainMarksOrRungs) {
   EXPECT_FALSE(ran(*bare, "splatter") || ran(*bare, "halos"));
 }
 
+TEST_F(Splatter, NeitherPassRunsWhereNoMarkIsInView) {
+  auto s = backlit_body(50.0f);
+  const glm::quat there = s->frame.camera.orientation;
+  s->frame.camera.orientation = glm::angleAxis(1.5707963f, glm::vec3(1.0f, 0.0f, 0.0f));  // straight up
+  EXPECT_EQ(light_of(*s), 0.0);
+  EXPECT_FALSE(ran(*s, "splatter") || ran(*s, "halos"));
+  s->frame.camera.orientation = there;
+  EXPECT_GT(light_of(*s), 0.0);
+  EXPECT_TRUE(ran(*s, "splatter") && ran(*s, "halos"));
+}
+
 // While one rung gives way to another their light adds up as the shares say: thin mist is linear.
 TEST_F(Splatter, SharesOfRungsKeepTheLight) {
   auto s = backlit_body(50.0f);

@@ -83,6 +83,21 @@ class WetSurfaces : public testing::Test {
   double time_s = 0.0;
   bool started = false;
 };
+TEST_F(WetSurfaces, ThePassDoesNotRunWhereNoSurfaceIsInView) {
+  pass(600.0);
+  draw();
+  EXPECT_TRUE(stage.ran());
+  const glm::quat there = stage.frame.camera.orientation;
+  stage.frame.camera.position_m.y += 100.0;  // over the roofs, straight up
+  stage.frame.camera.orientation = glm::angleAxis(1.5707963f, glm::vec3(1.0f, 0.0f, 0.0f));
+  draw();
+  EXPECT_FALSE(stage.ran());
+  stage.frame.camera.position_m.y -= 100.0;
+  stage.frame.camera.orientation = there;
+  draw();
+  EXPECT_TRUE(stage.ran());
+}
+
 
 TEST_F(WetSurfaces, AwningsKeepDryWhatTheWindLetsThem) {
   // Rain from -x: the shelter of a roof at 3 m moves 0.7 m (the largest drops) to 3 m (those of 0.5 mm) towards +x. (In
