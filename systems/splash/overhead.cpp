@@ -17,8 +17,8 @@ struct GlowGpu {
 void draw_overhead(OverheadState& state, PassContext& context) {
   const Frame& frame = context.frame;
   const FrameSplashes& splashes = *frame.splashes;
-  // Anew for each frame, so that none depends on which were drawn before: heights by the maps of shelter change with all
-  // that moves. The square stands still in the world, so that its texels do not swim.
+  // Anew for each frame, so that none depends on which were drawn before: heights by the maps of shelter change with
+  // all that moves. The square stands still in the world, so that its texels do not swim.
   const glm::dvec2 at(frame.camera.position_m.x, frame.camera.position_m.z);
   const glm::dvec2 middle = glm::floor(at / overhead_step_m + 0.5) * overhead_step_m;
   state.middle_m = middle;
