@@ -296,7 +296,8 @@ void draw_splashes(SplashGpuState& gpu, PassContext& context) {
 }
 
 bool wanted(const Frame& frame) {
-  return frame.splashes && any_surface_in_view(frame);
+  // Out to the corners of the square that those at random are strewn over.
+  return frame.splashes && any_surface_in_view(frame, 1.4143f * frame.splashes->reach_m);
 }
 
 void add_shader(PassOffer& offer, const std::string& name, const std::string& file, std::vector<std::string> defines) {
