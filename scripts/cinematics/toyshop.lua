@@ -67,6 +67,6 @@ timeline(function()
   wait_until(18)
   for _, part in ipairs(parts) do
     local p = part.transform.position_m
-    go(function() tween(part.transform, "position_m", { p.x, p.y, p.z + 42 }, 7, "smooth") end)
+    go(function() tween(part.transform, "position_m", { p.x, p.y, p.z + 21 }, 7, "out") end)
   end
 end)
