@@ -85,15 +85,42 @@ Result<void> Direction::warm_up(Renderer& renderer, World& world, double time_s,
   return outcome;
 }
 
+// Drawn by its first rung, which for what lands, wets and mirrors is to leave it out.
+bool Direction::left_out(World& world, const Ladder& ladder) const {
+  const Choice& choice = world.techniques()[ladder.effect];
+  return budget_ms > 0.0 && ladder.directed && !world.chosen_by_user(ladder.effect) && choice.rung == 0 &&
+         choice.blend >= 1.0f;
+}
+
+// An effect that is left out is not in the frame, so it cannot say how much of the picture it would take: now and then a
+// frame is extracted as if it were drawn, or it would stay out for ever.
+void Direction::ask_of_what_is_left_out(World& world, const std::function<void()>& extract_it, const Frame& frame) {
+  constexpr int asked_every = 15;  // frames
+  if (frames_++ % asked_every != 0) return;
+  const Techniques now = world.techniques();
+  std::vector<const Ladder*> asked;
+  for (const Ladder& ladder : director_.costs.ladders)
+    if (ladder.rungs.size() > 1 && left_out(world, ladder)) asked.push_back(&ladder);
+  if (asked.empty()) return;
+  for (const Ladder* ladder : asked) world.techniques().set(ladder->effect, std::uint8_t{1});
+  extract_it();
+  for (const Ladder* ladder : asked)
+    coverage_left_out_[static_cast<std::size_t>(ladder->effect)] = std::clamp(ladder->coverage(frame), 0.0, 1.0);
+  world.techniques() = now;
+}
+
 void Direction::extract(World& world, Frame& frame, std::uint64_t number, double time_s, double step_s, int width,
                         int height) {
   const auto extract_it = [&] {
     const Size size = drawn_size(world.techniques(), width, height);
     world.extract(frame, number, time_s, size.width, size.height);
   };
+  ask_of_what_is_left_out(world, extract_it, frame);
   extract_it();
-  for (const Ladder& ladder : director_.costs.ladders)
-    input_.coverage[static_cast<std::size_t>(ladder.effect)] = std::clamp(ladder.coverage(frame), 0.0, 1.0);
+  for (const Ladder& ladder : director_.costs.ladders) {
+    const auto e = static_cast<std::size_t>(ladder.effect);
+    input_.coverage[e] = left_out(world, ladder) ? coverage_left_out_[e] : std::clamp(ladder.coverage(frame), 0.0, 1.0);
+  }
   input_.budget_ms = budget_ms;
   input_.step_s = step_s;
   for (std::size_t e = 0; e < effect_count; ++e) input_.pinned[e] = world.chosen_by_user(static_cast<Effect>(e));

@@ -1,6 +1,9 @@
 #pragma once
 // The director at work: between a World, a Renderer and the measured times (systems/director decides).
 
+#include <array>
+#include <cstdint>
+#include <functional>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <span>
@@ -43,6 +46,10 @@ class Direction {
   DirectorOutput output_;
   Techniques asked_;
   std::vector<PassTime> passes_;
+  bool left_out(World&, const Ladder&) const;
+  void ask_of_what_is_left_out(World&, const std::function<void()>& extract_it, const Frame&);
+  std::array<double, effect_count> coverage_left_out_{};
+  std::int64_t frames_ = 0;
 };
 
 }  // namespace petrichor
