@@ -113,8 +113,8 @@ ReflectorsGpu choose_reflectors(const Frame& frame, const std::vector<Reflector>
     }
   std::erase_if(shining, [](const Candidate& c) { return !(c.importance > 0.0f); });
   keep(shining, most);
+  keep(posts, most_posts);  // before they are lit, by all lamps: the town has many
   for (Candidate& c : posts) c.reflector.radiance = lit_post(c.reflector, frame);
-  keep(posts, most_posts);
 
   shining.insert(shining.end(), posts.begin(), posts.end());
   std::stable_sort(shining.begin(), shining.end(),
